@@ -1,3 +1,14 @@
-//! The measured column: least squares (`fit`) and, on top of it, power laws on ladders of measurements (`window`).
+//! The measured column: particles placed, sums taken, power laws fitted.
+//!
+//! Uses floating point and random numbers (and the exact lattice sums, the ground that both columns are checked against);
+//! never the derived column.
+
 pub mod fit;
+mod regular;
+mod sample;
 pub mod window;
+
+pub use regular::{RegularNorm, RegularRung, RegularSpec, regular_rung};
+pub use sample::{
+    CLOSEST, MomentStatistics, SampleBlock, SampleError, SampleSpec, Sampler, Summary, is_precise, summarise,
+};

@@ -1,3 +1,21 @@
-//! Particles: the cloud that is analysed and the pairs that interact.
-pub mod cloud;
-pub mod neighbours;
+//! Particles: lattices with exact coordinates, disorder, volume rules, clouds and their neighbours.
+//!
+//! Follows `kernel` and is used by `sums`.
+
+mod cloud;
+pub mod disorder;
+mod error;
+pub mod lattice;
+mod neighbours;
+mod stream;
+mod symmetry;
+mod volume;
+
+pub use cloud::{Cloud, CloudError, Support};
+pub use disorder::{Disorder, DisorderModel, Moves};
+pub use error::ParticleError;
+pub use lattice::{Lattice, Site, SiteIndex, lattice_by_id};
+pub use neighbours::{Neighbour, Neighbours};
+pub use stream::SampleStream;
+pub use symmetry::{Operation, PointGroup};
+pub use volume::VolumeRule;

@@ -1,0 +1,118 @@
+//! Published statements as data, and the verdicts on them.
+//!
+//! A claim names a moment sum, a quantity made of it and, for power laws, the exponents over the basis (d̃, h, Δ/h) as
+//! rationals in β. A new paper is one file here and one line in [`catalogue`]; a new claim is one entry in its paper's
+//! file, or one in a scene.
+
+mod compare;
+mod error;
+mod exponents;
+mod fatehi_manzari_2011;
+mod rollup;
+mod verdict;
+
+pub use compare::{Comparison, Judgement, Measured, compare_exponent, judge_power_law};
+pub use error::ClaimError;
+pub use exponents::{BetaExponent, Powers};
+pub use rollup::{CaseVerdict, roll_up};
+pub use verdict::Verdict;
+
+use crate::names::nearest;
+use crate::sums::Moment;
+
+/// What is made of a moment sum S.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Quantity {
+    /// |S^reg| on the unperturbed lattice.
+    RegularValue,
+    /// |S^reg − continuum limit| on the unperturbed lattice.
+    RegularDeviation,
+    /// The root mean square of |S − S^reg| over samples of the disorder.
+    DisorderDeviation,
+}
+
+impl Quantity {
+    /// The name used in scenes.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::RegularValue => "regular-value",
+            Self::RegularDeviation => "regular-deviation",
+            Self::DisorderDeviation => "disorder-deviation",
+        }
+    }
+
+    /// The quantity of this name.
+    pub fn by_id(id: &str) -> Option<Self> {
+        [Self::RegularValue, Self::RegularDeviation, Self::DisorderDeviation].into_iter().find(|q| q.id() == id)
+    }
+
+    /// Whether it is taken on disordered particles.
+    pub fn is_disordered(self) -> bool {
+        self == Self::DisorderDeviation
+    }
+
+    /// As a formula, for a moment printed as `moment`.
+    pub fn formula(self, moment: Moment) -> String {
+        let s = moment.formula();
+        match self {
+            Self::RegularValue => format!("|{s}|"),
+            Self::RegularDeviation => format!("|{s} − lim|"),
+            Self::DisorderDeviation => format!("rms |{s} − reg|"),
+        }
+    }
+}
+
+/// What a claim states.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Statement {
+    /// The quantity is of the order d̃^a h^b (Δ/h)^c.
+    PowerLaw {
+        /// The quantity.
+        quantity: Quantity,
+        /// a, b, c, each a rational in β.
+        powers: Powers,
+    },
+    /// The moment vanishes on regular particles.
+    Zero,
+}
+
+/// One published statement that can be checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Claim {
+    /// For example `fatehi-table-2/sum_dw#disorder`.
+    pub id: String,
+    /// Key in `references.bib`, or `scene`.
+    pub source: String,
+    /// Equation, table and row.
+    pub location: String,
+    /// The statement as the paper makes it.
+    pub text: String,
+    /// The moment sum it is about.
+    pub moment: Moment,
+    /// The statement.
+    pub statement: Statement,
+    /// The dimensions it is made for.
+    pub dimensions: &'static [usize],
+}
+
+/// All built-in claims.
+pub fn catalogue() -> Vec<Claim> {
+    fatehi_manzari_2011::claims()
+}
+
+/// The claims that a scene means by `name`: a claim's own id, or the part before a `/`, which stands for all with it.
+///
+/// # Errors
+/// [`ClaimError::Unknown`] with the nearest known name.
+pub fn select(name: &str) -> Result<Vec<Claim>, ClaimError> {
+    let known = catalogue();
+    let group = |claim: &Claim| claim.id.split('/').next().unwrap_or_default().to_owned();
+    let chosen: Vec<Claim> = known.iter().filter(|claim| claim.id == name || group(claim) == name).cloned().collect();
+    if chosen.is_empty() {
+        let mut names: Vec<String> = known.iter().flat_map(|claim| [claim.id.clone(), group(claim)]).collect();
+        names.dedup();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        return Err(ClaimError::Unknown { name: name.to_owned(), nearest: nearest(name, &names) });
+    }
+    Ok(chosen)
+}

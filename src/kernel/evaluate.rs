@@ -1,0 +1,118 @@
+//! The kernel in floating point: W, W′/r and (W′/r)′/r, eight lanes at a time.
+//!
+//! Lengths are in units of R, x = r/R, W = R^{-D} F(x). Each piece is expanded about its right end, s = x_right − x, and
+//! the factor x^{-n} it has in G_k is split off exactly, so that a kernel keeps its relative accuracy where it joins zero
+//! and near the origin. No fused operations; the same bits on every machine.
+
+use super::Kernel;
+use crate::exact::{Polynomial, Rational, int, rational_to_f64};
+use num_traits::Float;
+
+/// Lanes of a block.
+pub(crate) const LANES: usize = 8;
+
+/// The values of G_0 = F, G_1 = F′/x and G_2 = (F′/x)′/x, unit of length R, in each lane.
+#[derive(Debug, Clone, Copy)]
+pub struct RadialValues<T> {
+    /// G_0, G_1, G_2 by lane; those that were not asked for are zero.
+    pub g: [[T; LANES]; 3],
+}
+
+/// A kernel made ready for evaluation in T = f32 or f64, in one dimension count, up to G_`order`.
+#[derive(Debug, Clone)]
+pub struct Evaluator<T> {
+    pieces: Vec<Piece<T>>,
+    order: usize,
+}
+
+#[derive(Debug, Clone)]
+struct Piece<T> {
+    from: T,
+    to: T,
+    /// For each G_k: descending coefficients in s, and the power n of 1/x.
+    functions: Vec<(Vec<T>, usize)>,
+}
+
+impl<T: Float> Evaluator<T> {
+    /// Prepares G_0 … G_`order` in `dimension` dimensions.
+    pub fn new(kernel: &Kernel, dimension: usize, order: usize) -> Self {
+        let kappa = kernel.support_over_h();
+        let sigma = kernel.normalisation_in_support(dimension).enclose(128).midpoint_f64();
+        let by_function: Vec<_> = (0..=order).map(|k| kernel.radial_function(k)).collect();
+        let pieces = (0..by_function[0].len())
+            .map(|index| {
+                let edges = &by_function[0][index];
+                let functions = by_function
+                    .iter()
+                    .enumerate()
+                    .map(|(k, pieces)| {
+                        let piece = &pieces[index];
+                        // q = κ (x_right − s): numerator in s; G_k in units of R carries κ^{2k} and κ^{-n} from q^{-n}.
+                        let q_of_s = Polynomial::new(vec![piece.to.clone(), -kappa.clone()]);
+                        let in_s = piece.numerator.compose(&q_of_s).scale(&power(
+                            kappa,
+                            2 * k as i64 - piece.denominator_power as i64,
+                        ));
+                        let coefficients =
+                            in_s.coefficients().iter().rev().map(|c| cast(rational_to_f64(c) * sigma)).collect();
+                        (coefficients, piece.denominator_power)
+                    })
+                    .collect();
+                Piece {
+                    from: cast(rational_to_f64(&(&edges.from / kappa))),
+                    to: cast(rational_to_f64(&(&edges.to / kappa))),
+                    functions,
+                }
+            })
+            .collect();
+        Self { pieces, order }
+    }
+
+    /// G_0 … G_order at x = r/R in each lane. Beyond the support they are zero. At x = 0, G_k is its limit where that
+    /// is finite and 0 where it is not: the moments it belongs to vanish there by antisymmetry.
+    pub fn evaluate(&self, x: &[T; LANES]) -> RadialValues<T> {
+        let mut values = RadialValues { g: [[T::zero(); LANES]; 3] };
+        let inverse = x.map(|x| if x > T::zero() { T::one() / x } else { T::zero() });
+        for piece in &self.pieces {
+            let inside = x.map(|x| x >= piece.from && x < piece.to);
+            if !inside.contains(&true) {
+                continue;
+            }
+            let s = x.map(|x| piece.to - x);
+            for (k, (coefficients, inverse_power)) in piece.functions.iter().enumerate() {
+                let mut sum = [T::zero(); LANES];
+                for coefficient in coefficients {
+                    for lane in 0..LANES {
+                        sum[lane] = sum[lane] * s[lane] + *coefficient;
+                    }
+                }
+                for _ in 0..*inverse_power {
+                    for lane in 0..LANES {
+                        sum[lane] = sum[lane] * inverse[lane];
+                    }
+                }
+                for lane in 0..LANES {
+                    if inside[lane] {
+                        values.g[k][lane] = sum[lane];
+                    }
+                }
+            }
+        }
+        values
+    }
+
+    /// The highest k for which G_k is evaluated.
+    pub fn order(&self) -> usize {
+        self.order
+    }
+}
+
+fn cast<T: Float>(value: f64) -> T {
+    // Every f64 has a nearest f32 and itself as f64; `from` fails for neither.
+    T::from(value).unwrap_or_else(T::nan)
+}
+
+fn power(base: &Rational, exponent: i64) -> Rational {
+    let positive = (0..exponent.abs()).fold(int(1), |product, _| product * base);
+    if exponent < 0 { positive.recip() } else { positive }
+}

@@ -1,0 +1,5 @@
+//! One record; JSON is the source, everything else is a view of it.
+
+mod record;
+
+pub use record::*;

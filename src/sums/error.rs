@@ -1,0 +1,59 @@
+//! What can be wrong with a request for sums.
+
+use thiserror::Error;
+
+/// Errors of the sums layer.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SumError {
+    /// A moment beyond what is enumerated.
+    #[error("moment sums are enumerated for p ≤ 6 and q ≤ 2, not for {what}")]
+    Moment {
+        /// What was asked for.
+        what: String,
+    },
+    /// No moment of this name.
+    #[error("there is no moment sum '{name}'{}; names are sum_, p times r, then w, dw, ddw or lapw, and b_inverse", nearest.as_ref().map(|n| format!(" (did you mean '{n}'?)")).unwrap_or_default())]
+    UnknownMoment {
+        /// The name given.
+        name: String,
+        /// The nearest known name.
+        nearest: Option<String>,
+    },
+    /// A support without neighbours.
+    #[error("R/Δ = {support_over_dx} leaves particle i without neighbours on lattice '{lattice}': the nearest is at {nearest} Δ")]
+    NoNeighbours {
+        /// R/Δ.
+        support_over_dx: f64,
+        /// The lattice.
+        lattice: String,
+        /// The distance of the nearest neighbour.
+        nearest: f64,
+    },
+    /// R/Δ is not positive.
+    #[error("R/Δ = {support_over_dx} must be finite and positive")]
+    Support {
+        /// R/Δ as given.
+        support_over_dx: String,
+    },
+    /// The sum would not fit in memory.
+    #[error("R/Δ = {support_over_dx} on lattice '{lattice}' needs about {needed_mib} MiB for {sites:.3e} sites, more than the {allowed_mib} MiB allowed: lower R/Δ or raise memory_mib under [limits]")]
+    Memory {
+        /// R/Δ.
+        support_over_dx: f64,
+        /// The lattice.
+        lattice: String,
+        /// Sites in the support.
+        sites: f64,
+        /// What it would take.
+        needed_mib: u64,
+        /// What is allowed.
+        allowed_mib: u64,
+    },
+    /// ΣW vanishes, so V = 1/ΣW does not exist.
+    #[error("ΣW vanishes at R/Δ = {support_over_dx}: V = 1/ΣW does not exist")]
+    NoVolume {
+        /// R/Δ.
+        support_over_dx: f64,
+    },
+}
