@@ -1,5 +1,13 @@
-//! One record; JSON is the source, everything else is a view of it.
+//! One record; JSON is the source, every other form is a view of it.
 
+mod assemble;
+mod markdown;
 mod record;
+mod table;
+mod write;
 
+pub use assemble::assemble;
+pub use markdown::markdown;
 pub use record::*;
+pub use table::{Row, Section, sections};
+pub use write::{WriteError, check_target, write_report};

@@ -1,0 +1,151 @@
+//! The arguments of each command.
+
+use crate::study::Shard;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Truncation errors of particle operators: published, derived and measured side by side, with a verdict.
+#[derive(Debug, Parser)]
+#[command(name = "remainder", version, about, after_help = EXIT_CODES)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 all verdicts as the scene expects, 1 some differ, 2 the input is wrong, \
+                          3 inconclusive, 130 interrupted.";
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Run a scene and write its report
+    Run(RunArguments),
+    /// Make the report of a scene whose shards have been run
+    Merge(MergeArguments),
+    /// Say what a scene would compute, and what it leaves out
+    Plan(PlanArguments),
+    /// Print the JSON Schema of scenes or reports
+    Schema(SchemaArguments),
+    /// List what can be named in a scene
+    List(ListArguments),
+}
+
+#[derive(Debug, Clone, Args)]
+pub(super) struct RunArguments {
+    /// A scene file, or a folder with scene.toml or scene.json
+    pub(super) scene: PathBuf,
+    /// Folder of the report [default: reports/NAME]
+    #[arg(long)]
+    pub(super) out: Option<PathBuf>,
+    /// Folder of finished blocks
+    #[arg(long, default_value = ".remainder")]
+    pub(super) store: PathBuf,
+    /// A first look in seconds: shorter ladders, fewer samples
+    #[arg(long)]
+    pub(super) quick: bool,
+    /// Compute part I of N only, for `remainder merge` to join
+    #[arg(long, value_name = "I/N", value_parser = parse_shard)]
+    pub(super) shard: Option<Shard>,
+    /// Threads [default: one per core]
+    #[arg(long)]
+    pub(super) threads: Option<usize>,
+    /// Print the report as JSON instead of a table
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Further folders of finished blocks to read from
+    #[arg(skip)]
+    pub(super) from: Vec<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct MergeArguments {
+    /// The scene whose shards were run
+    pub(super) scene: PathBuf,
+    /// Folders of finished blocks of other shards
+    pub(super) from: Vec<PathBuf>,
+    /// Folder of the report [default: reports/NAME]
+    #[arg(long)]
+    pub(super) out: Option<PathBuf>,
+    /// Folder of finished blocks
+    #[arg(long, default_value = ".remainder")]
+    pub(super) store: PathBuf,
+    /// The shards were run with --quick
+    #[arg(long)]
+    pub(super) quick: bool,
+    /// Print the report as JSON instead of a table
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+impl MergeArguments {
+    pub(super) fn as_run(&self) -> RunArguments {
+        RunArguments {
+            scene: self.scene.clone(),
+            out: self.out.clone(),
+            store: self.store.clone(),
+            quick: self.quick,
+            shard: None,
+            threads: None,
+            json: self.json,
+            from: self.from.clone(),
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct PlanArguments {
+    /// A scene file, or a folder with scene.toml or scene.json
+    pub(super) scene: PathBuf,
+    /// As for a first look
+    #[arg(long)]
+    pub(super) quick: bool,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SchemaArguments {
+    /// Of what
+    pub(super) of: SchemaOf,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum SchemaOf {
+    /// Scenes
+    Scene,
+    /// Reports
+    Report,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ListArguments {
+    /// Only these
+    pub(super) what: Option<Listed>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Listed {
+    /// Kernels
+    Kernels,
+    /// Lattices
+    Lattices,
+    /// Disorder models
+    Disorders,
+    /// Volume rules
+    VolumeRules,
+    /// Moment sums
+    Moments,
+    /// Published claims
+    Claims,
+}
+
+fn parse_shard(text: &str) -> Result<Shard, String> {
+    let parts = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+    match parts {
+        Some((index, count)) if index >= 1 && index <= count => Ok(Shard { index, count }),
+        _ => Err("write I/N with 1 ≤ I ≤ N, for example 1/4".into()),
+    }
+}

@@ -1,0 +1,42 @@
+//! The command line: arguments in, events drawn, exit code out.
+
+mod arguments;
+mod catalogue;
+mod diagnostic;
+mod execute;
+mod exit;
+mod progress;
+mod terminal;
+
+pub use arguments::Arguments;
+pub use exit::Exit;
+
+use arguments::Command;
+use clap::Parser as _;
+use std::ffi::OsString;
+
+/// Runs the program with these arguments (the first is its name) and returns its exit code.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are not errors; clap prints each where it belongs.
+            let _ = error.print();
+            return if error.use_stderr() { Exit::WrongInput } else { Exit::AsExpected };
+        }
+    };
+    let done = match &arguments.command {
+        Command::Run(run) => execute::run(run, false),
+        Command::Merge(merge) => execute::run(&merge.as_run(), true),
+        Command::Plan(plan) => execute::plan(plan),
+        Command::Schema(schema) => catalogue::schema(schema.of),
+        Command::List(list) => catalogue::list(list),
+    };
+    match done {
+        Ok(exit) => exit,
+        Err(failure) => {
+            diagnostic::print(&failure);
+            failure.exit()
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! Progress: bars on a terminal, a calm line now and then elsewhere.
+
+use crate::study::Event;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::collections::BTreeMap;
+use std::io::IsTerminal as _;
+use std::sync::{Mutex, PoisonError};
+
+/// Draws events on standard error and keeps the seconds of each task for `timings.json`.
+pub(super) struct Progress {
+    bar: ProgressBar,
+    interactive: bool,
+    state: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    tasks: usize,
+    finished: usize,
+    stored: u64,
+    cost: u64,
+    done: u64,
+    tenths: u64,
+    seconds: BTreeMap<String, f64>,
+}
+
+impl Progress {
+    pub(super) fn new() -> Self {
+        let interactive = std::io::stderr().is_terminal();
+        let target = if interactive { ProgressDrawTarget::stderr_with_hz(8) } else { ProgressDrawTarget::hidden() };
+        let bar = ProgressBar::with_draw_target(Some(0), target);
+        let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {elapsed} + {eta}  {wide_msg}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self { bar, interactive, state: Mutex::default() }
+    }
+
+    /// Takes an event, from any thread.
+    pub(super) fn take(&self, event: Event) {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        match event {
+            Event::Planned { tasks, cost } => {
+                (state.tasks, state.cost) = (tasks, cost);
+                self.bar.set_length(cost.max(1));
+            }
+            Event::Advanced { cost, stored } => {
+                state.done += cost;
+                state.stored += u64::from(stored);
+                self.bar.inc(cost);
+            }
+            Event::Finished { label, seconds, spared } => {
+                state.done += spared;
+                state.finished += 1;
+                self.bar.inc(spared);
+                self.bar.set_message(format!("{}/{} {label}", state.finished, state.tasks));
+                *state.seconds.entry(label).or_default() += seconds;
+            }
+        }
+        let tenths = if state.cost == 0 { 10 } else { state.done * 10 / state.cost };
+        if !self.interactive && tenths > state.tenths {
+            state.tenths = tenths;
+            eprintln!("{} of {} tasks, {} % of the work", state.finished, state.tasks, tenths * 10);
+        }
+    }
+
+    /// Clears the bar; seconds by task, and how many blocks were found in the store.
+    pub(super) fn finish(self) -> (BTreeMap<String, f64>, u64) {
+        self.bar.finish_and_clear();
+        let state = self.state.into_inner().unwrap_or_else(PoisonError::into_inner);
+        (state.seconds, state.stored)
+    }
+}

@@ -1,0 +1,73 @@
+//! The record as Markdown.
+
+use super::record::Report;
+use super::table::{Section, sections};
+use std::fmt::Write as _;
+
+/// `report.md`: the verdicts first, then the cases of each claim, then what was left out.
+pub fn markdown(report: &Report) -> String {
+    let mut text = String::new();
+    let title = if report.provenance.title.is_empty() { &report.provenance.scene } else { &report.provenance.title };
+    let _ = writeln!(text, "# {title}\n");
+    let first_look = if report.provenance.quick { " A first look: ladders and samples were shortened." } else { "" };
+    let _ = writeln!(
+        text,
+        "Scene `{}` (SHA-256 {}…), seed {}, remainder {}.{first_look}\n",
+        report.provenance.scene,
+        &report.provenance.scene_sha256[..12.min(report.provenance.scene_sha256.len())],
+        report.provenance.seed,
+        report.provenance.version
+    );
+    let sections = sections(report);
+    text.push_str("| claim | printed in | verdict | on what it depends |\n|---|---|---|---|\n");
+    for section in &sections {
+        let _ = writeln!(
+            text,
+            "| {} | {} | **{}**{} | {} |",
+            cell(&section.statement),
+            cell(&section.location),
+            section.verdict,
+            section.expected.filter(|e| *e != section.verdict).map(|e| format!(" (expected {e})")).unwrap_or_default(),
+            cell(&section.why)
+        );
+    }
+    text.push_str(
+        "\nExponents are over the basis (d̃, h, Δ/h); that of h follows from the scaling of all lengths and is no fit. \
+         Intervals cover 95 %. `confirmed`: equal within the margin; `bound`: true as an upper bound, not sharp; \
+         `refuted`: the sum outgrows the printed order.\n",
+    );
+    for section in &sections {
+        section_text(&mut text, section);
+    }
+    text.push_str("\n## Left out\n\n");
+    for item in &report.left_out {
+        let saved = item.saved.as_ref().map(|saved| format!(" (saves {saved})")).unwrap_or_default();
+        let _ = writeln!(text, "- {}: {}{saved}", item.what, item.why);
+    }
+    let cost = report.cost;
+    let _ = writeln!(text, "\nTaken: {} exact sums, {} samples, {} pairs.", cost.exact_sums, cost.samples, cost.pairs);
+    text
+}
+
+fn section_text(text: &mut String, section: &Section) {
+    let _ = writeln!(text, "\n## `{}`\n\n{}, {}.\n", section.id, cell(&section.statement), section.location);
+    text.push_str("| D | case | published d̃, Δ/h | measured d̃ | measured Δ/h | verdict | why |\n|---|---|---|---|---|---|---|\n");
+    for row in &section.rows {
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} | {} | {} |",
+            row.dimension,
+            row.case,
+            row.published,
+            row.displacement,
+            row.dx_over_h,
+            row.verdict,
+            cell(&row.why)
+        );
+    }
+}
+
+/// Text inside a table cell: a bar would end it.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}

@@ -1,0 +1,140 @@
+//! The verdict table as plain rows, for the terminal and for Markdown alike.
+
+use super::record::{ClaimEntry, Column, Estimate, Number, Report, Verdict};
+use std::collections::BTreeMap;
+
+/// One claim with its cases.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Section {
+    /// The claim's id.
+    pub id: String,
+    /// Where it is printed.
+    pub location: String,
+    /// The statement.
+    pub statement: String,
+    /// The verdict over all cases, and why.
+    pub verdict: Verdict,
+    /// Why.
+    pub why: String,
+    /// What the scene expects.
+    pub expected: Option<Verdict>,
+    /// The cases.
+    pub rows: Vec<Row>,
+}
+
+/// One case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// `2-D`.
+    pub dimension: String,
+    /// What varies between the cases of the report: disorder, kernel, lattice, volume rule.
+    pub case: String,
+    /// Published exponents of d̃ and Δ/h, or what else is published.
+    pub published: String,
+    /// Measured exponent of d̃.
+    pub displacement: String,
+    /// Measured exponent of Δ/h.
+    pub dx_over_h: String,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why.
+    pub why: String,
+}
+
+/// The report's claims in order, each with its cases.
+pub fn sections(report: &Report) -> Vec<Section> {
+    let shown = varying(report);
+    report
+        .verdicts
+        .iter()
+        .map(|rolled| {
+            let entries: Vec<&ClaimEntry> = report.claims.iter().filter(|claim| claim.id == rolled.id).collect();
+            Section {
+                id: rolled.id.clone(),
+                location: entries.first().map(|entry| entry.citation.location.clone()).unwrap_or_default(),
+                statement: entries.first().map(|entry| entry.statement.clone()).unwrap_or_default(),
+                verdict: rolled.verdict,
+                why: rolled.why.clone(),
+                expected: rolled.expected,
+                rows: entries.iter().map(|entry| row(entry, &shown)).collect(),
+            }
+        })
+        .collect()
+}
+
+/// The fields of a case that differ within the report, besides the dimension and the disorder.
+fn varying(report: &Report) -> Vec<&'static str> {
+    let mut values: BTreeMap<(&'static str, u8), Vec<String>> = BTreeMap::new();
+    for entry in &report.claims {
+        let fields = [
+            ("kernel", Some(&entry.case.kernel)),
+            ("lattice", entry.case.lattice.as_ref()),
+            ("volumes", Some(&entry.case.volume_rule)),
+        ];
+        for (name, value) in fields {
+            let seen = values.entry((name, entry.case.dimension)).or_default();
+            if let Some(value) = value.filter(|value| !seen.contains(value)) {
+                seen.push(value.clone());
+            }
+        }
+    }
+    ["kernel", "lattice", "volumes"]
+        .into_iter()
+        .filter(|name| values.iter().any(|((known, _), seen)| known == name && seen.len() > 1))
+        .collect()
+}
+
+fn row(entry: &ClaimEntry, shown: &[&str]) -> Row {
+    let case = &entry.case;
+    let mut parts = vec![match case.disorder.as_deref() {
+        None | Some("none") => "regular".to_owned(),
+        Some(disorder) => disorder.to_owned(),
+    }];
+    for name in shown {
+        parts.push(match *name {
+            "kernel" => case.kernel.clone(),
+            "lattice" => case.lattice.clone().unwrap_or_default(),
+            _ => case.volume_rule.clone(),
+        });
+    }
+    let exponent = |column: &Option<Column>, which: fn(&super::Exponents) -> &Option<Estimate>| {
+        column.as_ref().and_then(|c| c.exponents.as_ref()).and_then(|e| which(e).clone())
+    };
+    let published = match (exponent(&entry.published, |e| &e.displacement), exponent(&entry.published, |e| &e.dx_over_h)) {
+        (Some(d), Some(x)) if number(&d.value) == "0" => number(&x.value),
+        (Some(d), Some(x)) => format!("{}, {}", number(&d.value), number(&x.value)),
+        _ => "0".into(),
+    };
+    let zero = entry.measured.as_ref().and_then(|column| column.zero.as_ref());
+    let dx_over_h = match (exponent(&entry.measured, |e| &e.dx_over_h), zero) {
+        (Some(x), _) => interval(&x),
+        (None, Some(zero)) if zero.holds => format!("zero by {}", zero.by.as_deref().unwrap_or("value")),
+        (None, Some(zero)) => format!("up to {:.2e}", zero.bound.unwrap_or(f64::NAN)),
+        _ => "–".into(),
+    };
+    let displacement = match exponent(&entry.measured, |e| &e.displacement) {
+        Some(d) if d.by == Some(super::Source::Identity) => String::new(),
+        Some(d) => interval(&d),
+        None => String::new(),
+    };
+    Row {
+        dimension: format!("{}-D", case.dimension),
+        case: parts.join(" "),
+        published,
+        displacement,
+        dx_over_h,
+        verdict: entry.verdict,
+        why: entry.why.clone(),
+    }
+}
+
+fn number(value: &Number) -> String {
+    match value {
+        Number::Rational(text) => text.clone(),
+        Number::Float(value) => format!("{value:.2}"),
+    }
+}
+
+fn interval(estimate: &Estimate) -> String {
+    format!("{} [{}, {}]", number(&estimate.value), number(&estimate.low), number(&estimate.high))
+}

@@ -1,0 +1,63 @@
+//! What can go wrong in a study.
+
+use super::source::SceneError;
+use crate::measured::SampleError;
+use crate::sums::SumError;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Errors of the study layer.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// The scene is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A lattice sum could not be taken.
+    #[error("{task}: {source}")]
+    Sum {
+        /// The task.
+        task: String,
+        /// Why.
+        source: SumError,
+    },
+    /// A sample could not be taken.
+    #[error("{task}: {source}")]
+    Sample {
+        /// The task.
+        task: String,
+        /// Why.
+        source: SampleError,
+    },
+    /// A file could not be read or written.
+    #[error("{action} {}: {source}", path.display())]
+    File {
+        /// What was tried.
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        source: std::io::Error,
+    },
+    /// A file stands where a stored block should, and is none, or not whole.
+    #[error("{} is not a whole stored block of this study ({what}): move it away or delete it, and run again", path.display())]
+    ForeignBlock {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// Blocks are missing where all should be stored.
+    #[error("{missing} of {tasks} tasks are not complete in the store, for example {example}: run the remaining shards first")]
+    Incomplete {
+        /// Tasks without all their blocks.
+        missing: usize,
+        /// All tasks.
+        tasks: usize,
+        /// One of them.
+        example: String,
+    },
+    /// The caller asked to stop; every finished block is stored.
+    #[error("interrupted; every finished block is stored, and the same command goes on from there")]
+    Interrupted,
+}

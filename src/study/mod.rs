@@ -1,0 +1,24 @@
+//! Studies: a scene becomes a plan, the plan is run, its blocks are stored, its claims judged.
+//!
+//! Emits events and prints nothing. The caller chooses threads (by the rayon pool it calls from), cancellation and the
+//! sink of events. What a study returns is a pure function of the scene and its stored blocks.
+
+mod error;
+mod event;
+mod judge;
+mod ladder;
+mod outcome;
+mod plan;
+mod run;
+mod scene;
+mod source;
+mod store;
+
+pub use error::StudyError;
+pub use event::Event;
+pub use outcome::{CaseId, JudgedCase, LadderFit, MeasuredColumn, Outcome, RolledClaim, Rung, Varies};
+pub use plan::{Plan, Task};
+pub use run::{RunOptions, Shard, run};
+pub use scene::{RawScene, Scene};
+pub use source::{SceneError, SceneText};
+pub use store::{BlockStore, write_whole};

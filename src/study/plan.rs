@@ -1,0 +1,346 @@
+//! The plan: the least work that answers a scene.
+//!
+//! Tasks are grouped by kernel, lattice and volume rule, and take only the moments that some claim asks for, only the
+//! components that symmetry leaves, and only the ladders that some quantity needs.
+
+use super::outcome::{CaseId, Varies};
+use super::scene::Scene;
+use crate::claim::{Claim, Quantity, Statement};
+use crate::exact::{Rational, rational_text, rational_to_f64};
+use crate::kernel::Kernel;
+use crate::measured::{RegularSpec, SampleSpec};
+use crate::particles::{Disorder, Lattice, Moves, PointGroup, VolumeRule};
+use crate::sums::{Moment, Reduction};
+use itertools::Itertools;
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+use std::fmt::Write as _;
+
+/// Changes whenever the same inputs may give other bits: blocks stored by another engine are not found.
+pub(super) const ENGINE: &str = "remainder-engine/1";
+
+/// A unit of work whose results are stored block by block.
+#[derive(Debug, Clone)]
+pub enum Task {
+    /// One rung of regular particles: exact sums at R/Δ and its offsets. One block.
+    Regular(RegularSpec),
+    /// One R/Δ and amplitude of disordered particles: as many blocks of samples as the precision needs.
+    Samples {
+        /// What to sample.
+        spec: SampleSpec,
+        /// R/Δ, exactly.
+        support: Rational,
+    },
+}
+
+/// A ladder: which tasks make its rungs, and for what.
+#[derive(Debug, Clone)]
+pub(super) struct LadderPlan {
+    pub case: CaseId,
+    pub varies: Varies,
+    pub moments: Vec<Moment>,
+    /// Indices of tasks by rung; several where an envelope is taken.
+    pub rungs: Vec<Vec<usize>>,
+}
+
+/// One thing the scene does not need.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Omission {
+    /// What.
+    pub what: String,
+    /// Why.
+    pub why: String,
+    /// What that saves.
+    pub saved: Option<String>,
+}
+
+/// What will be computed, and what was left out.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The units of work.
+    pub tasks: Vec<Task>,
+    /// What was left out.
+    pub omissions: Vec<Omission>,
+    pub(super) ladders: Vec<LadderPlan>,
+    /// Exact sums over a support, one per free component and R/Δ.
+    pub exact_sums: u64,
+    /// The most samples, if every task needs all its blocks.
+    pub most_samples: u64,
+    /// Estimated pairs for these.
+    pub most_pairs: u64,
+}
+
+impl Plan {
+    /// Plans a scene.
+    pub fn of(scene: &Scene) -> Self {
+        let mut plan = Self {
+            tasks: Vec::new(),
+            omissions: Vec::new(),
+            ladders: Vec::new(),
+            exact_sums: 0,
+            most_samples: 0,
+            most_pairs: 0,
+        };
+        let groups: Vec<PointGroup> = scene.lattices.iter().map(PointGroup::of).collect();
+        for (lattice, group) in scene.lattices.iter().zip(&groups) {
+            let claims = claims_in(scene, lattice.dimension());
+            let regular = regular_moments(&claims, lattice, group);
+            let disordered = disordered_moments(&claims);
+            for (kernel, rule) in scene.kernels.iter().cartesian_product(&scene.rules) {
+                plan.add_regular(scene, kernel, lattice, group, *rule, &regular);
+                for disorder in scene.disorders.iter().filter(|_| !disordered.is_empty()) {
+                    plan.add_disordered(scene, kernel, lattice, *rule, disorder, &disordered);
+                }
+            }
+        }
+        let (blocks, _) = scene.sampling();
+        for task in &plan.tasks {
+            if let Task::Samples { .. } = task {
+                plan.most_samples += blocks * scene.raw.samples.block;
+            }
+            plan.most_pairs += task.cost(scene);
+        }
+        plan.omissions = omissions(scene, &groups);
+        plan
+    }
+
+    fn add_regular(
+        &mut self,
+        scene: &Scene,
+        kernel: &Kernel,
+        lattice: &Lattice,
+        group: &PointGroup,
+        rule: VolumeRule,
+        moments: &[Moment],
+    ) {
+        if moments.is_empty() {
+            return;
+        }
+        let free: usize = moments.iter().map(|moment| Reduction::of(*moment, lattice, group).free().len()).sum();
+        let mut rungs = Vec::new();
+        for supports in scene.regular_ladder(lattice.dimension()) {
+            self.exact_sums += (free * supports.len()) as u64;
+            rungs.push(vec![self.tasks.len()]);
+            self.tasks.push(Task::Regular(RegularSpec {
+                kernel: kernel.clone(),
+                lattice: lattice.clone(),
+                rule,
+                moments: moments.to_vec(),
+                supports,
+                memory_mib: scene.raw.limits.memory_mib,
+            }));
+        }
+        let case = CaseId::new(kernel, lattice, None, rule);
+        self.ladders.push(LadderPlan { case, varies: Varies::DxOverH, moments: moments.to_vec(), rungs });
+    }
+
+    fn add_disordered(
+        &mut self,
+        scene: &Scene,
+        kernel: &Kernel,
+        lattice: &Lattice,
+        rule: VolumeRule,
+        disorder: &Disorder,
+        moments: &[Moment],
+    ) {
+        let dimension = lattice.dimension();
+        let case = CaseId::new(kernel, lattice, Some(disorder), rule);
+        let mut push = |support: &Rational, amplitude: f64| {
+            let spec = SampleSpec {
+                kernel: kernel.clone(),
+                lattice: lattice.clone(),
+                disorder: disorder.clone(),
+                amplitude,
+                support_over_dx: rational_to_f64(support),
+                rule,
+                moments: moments.to_vec(),
+                seed: scene.raw.study.seed,
+            };
+            self.tasks.push(Task::Samples { spec, support: support.clone() });
+            self.tasks.len() - 1
+        };
+        let ladder = scene.disorder_ladder(dimension, disorder.entry().moves);
+        let finest = ladder.iter().flatten().map(rational_to_f64).fold(0.0, f64::max);
+        // d̃ and h are held: the amplitude, in Δ, falls with Δ/h towards the coarse end.
+        let rungs = ladder.iter().map(|rung| {
+            rung.iter()
+                .map(|support| push(support, disorder.amplitude() * (rational_to_f64(support) / finest)))
+                .collect_vec()
+        });
+        let rungs = rungs.collect_vec();
+        let (support, factors) = scene.displacement_ladder(dimension);
+        let heights = factors.iter().map(|factor| vec![push(&support, disorder.amplitude() * factor)]).collect_vec();
+        let moments = moments.to_vec();
+        self.ladders.push(LadderPlan { case: case.clone(), varies: Varies::DxOverH, moments: moments.clone(), rungs });
+        self.ladders.push(LadderPlan { case, varies: Varies::Displacement, moments, rungs: heights });
+    }
+}
+
+impl Task {
+    /// For people.
+    pub fn label(&self) -> String {
+        match self {
+            Self::Regular(spec) => {
+                let first = spec.supports.first().map(rational_text).unwrap_or_default();
+                format!("{} {} regular, R/Δ = {first}…", spec.lattice.id(), spec.kernel.id())
+            }
+            Self::Samples { spec, support } => format!(
+                "{} {} {} {}, R/Δ = {}, amplitude {:.3e}",
+                spec.lattice.id(),
+                spec.kernel.id(),
+                spec.disorder,
+                spec.rule,
+                rational_to_f64(support),
+                spec.amplitude
+            ),
+        }
+    }
+
+    /// Estimated work in pairs, if every sample is needed.
+    pub fn cost(&self, scene: &Scene) -> u64 {
+        match self {
+            Self::Regular(spec) => spec.supports.iter().map(|s| spec.lattice.estimate_within(rational_to_f64(s)) as u64).sum(),
+            Self::Samples { spec, .. } => {
+                let (blocks, _) = scene.sampling();
+                blocks * scene.raw.samples.block * sample_pairs(spec)
+            }
+        }
+    }
+
+    /// The case key: SHA-256 of the canonical inputs and the engine version.
+    pub fn key(&self) -> String {
+        #[derive(Serialize)]
+        struct Inputs {
+            engine: &'static str,
+            kernel: Vec<(String, Vec<String>)>,
+            lattice: (usize, Vec<String>, Vec<[i64; 3]>, Vec<[i64; 3]>),
+            rule: VolumeRule,
+            moments: Vec<Moment>,
+            supports: Vec<String>,
+            disorder: Option<(String, f64, u64)>,
+        }
+        let kernel = |kernel: &Kernel| {
+            let profile = kernel.profile();
+            let pieces = profile.pieces().iter().zip(&profile.knots()[1..]);
+            pieces.map(|(p, knot)| (rational_text(knot), p.coefficients().iter().map(rational_text).collect())).collect()
+        };
+        let lattice = |lattice: &Lattice| {
+            let squares = lattice.axis_squares().iter().map(rational_text).collect();
+            (lattice.dimension(), squares, lattice.vectors().to_vec(), lattice.basis().to_vec())
+        };
+        let inputs = match self {
+            Self::Regular(spec) => Inputs {
+                engine: ENGINE,
+                kernel: kernel(&spec.kernel),
+                lattice: lattice(&spec.lattice),
+                rule: spec.rule,
+                moments: spec.moments.clone(),
+                supports: spec.supports.iter().map(rational_text).collect(),
+                disorder: None,
+            },
+            Self::Samples { spec, support } => Inputs {
+                engine: ENGINE,
+                kernel: kernel(&spec.kernel),
+                lattice: lattice(&spec.lattice),
+                rule: spec.rule,
+                moments: spec.moments.clone(),
+                supports: vec![rational_text(support)],
+                disorder: Some((spec.disorder.model().to_owned(), spec.amplitude, spec.seed)),
+            },
+        };
+        let canonical = serde_json::to_vec(&inputs).unwrap_or_else(|error| unreachable!("plain data: {error}"));
+        Sha256::digest(canonical).iter().fold(String::new(), |mut hex, byte| {
+            let _ = write!(hex, "{byte:02x}");
+            hex
+        })
+    }
+}
+
+/// Estimated pairs of one sample.
+pub(super) fn sample_pairs(spec: &SampleSpec) -> u64 {
+    let inside = spec.lattice.estimate_within(spec.support_over_dx);
+    let pairs = match spec.rule {
+        VolumeRule::Constant => inside,
+        VolumeRule::NumberDensity => inside * (inside + 1.0),
+    };
+    pairs as u64 + 1
+}
+
+/// The claims that are made for a dimension.
+pub(super) fn claims_in(scene: &Scene, dimension: usize) -> Vec<Claim> {
+    scene.claims.iter().filter(|claim| claim.dimensions.contains(&dimension)).cloned().collect()
+}
+
+/// The moments whose regular sums some claim needs and symmetry does not settle.
+fn regular_moments(claims: &[Claim], lattice: &Lattice, group: &PointGroup) -> Vec<Moment> {
+    let needs = |claim: &&Claim| match &claim.statement {
+        Statement::PowerLaw { quantity, .. } => !quantity.is_disordered(),
+        Statement::Zero => true,
+    };
+    let asked = claims.iter().filter(needs).map(|claim| claim.moment).sorted().dedup();
+    asked.filter(|moment| !Reduction::of(*moment, lattice, group).vanishes()).collect()
+}
+
+fn disordered_moments(claims: &[Claim]) -> Vec<Moment> {
+    let needs = |claim: &&Claim| matches!(claim.statement, Statement::PowerLaw { quantity: Quantity::DisorderDeviation, .. });
+    claims.iter().filter(needs).map(|claim| claim.moment).sorted().dedup().collect()
+}
+
+fn omissions(scene: &Scene, groups: &[PointGroup]) -> Vec<Omission> {
+    let mut omissions = Vec::new();
+    for (lattice, group) in scene.lattices.iter().zip(groups) {
+        let claims = claims_in(scene, lattice.dimension());
+        for moment in regular_moments(&claims, lattice, group) {
+            let reduction = Reduction::of(moment, lattice, group);
+            let (zero, equal) = reduction.left_out();
+            if zero + equal > 0 {
+                omissions.push(Omission {
+                    what: format!("components of {moment} on {}", lattice.id()),
+                    why: format!("{zero} vanish and {equal} equal another by the symmetry of the site ({} operations)", group.order()),
+                    saved: Some(format!("{} of {} exact sums per R/Δ", zero + equal, reduction.components.len())),
+                });
+            }
+        }
+        for claim in claims.iter().filter(|claim| needs_regular(claim) && Reduction::of(claim.moment, lattice, group).vanishes()) {
+            omissions.push(Omission {
+                what: format!("{} on regular {}", claim.moment, lattice.id()),
+                why: "vanishes by the symmetry of the site".into(),
+                saved: Some("its whole ladder".into()),
+            });
+        }
+    }
+    let asked: Vec<Moment> = scene.claims.iter().map(|claim| claim.moment).sorted().dedup().collect();
+    let not_asked = Moment::all(4).into_iter().filter(|moment| !asked.contains(moment)).map(Moment::name).collect_vec();
+    if !not_asked.is_empty() {
+        omissions.push(Omission { what: format!("moments {}", not_asked.join(", ")), why: "no claim asks for them".into(), saved: None });
+    }
+    let dimensions = (1..=3).filter(|d| scene.lattices.iter().all(|lattice| lattice.dimension() != *d)).collect_vec();
+    if !dimensions.is_empty() {
+        omissions.push(Omission {
+            what: format!("dimension {}", dimensions.iter().join(", ")),
+            why: "the scene names no lattice there".into(),
+            saved: None,
+        });
+    }
+    let kernels = crate::kernel::catalogue();
+    let unnamed = kernels.iter().filter(|k| scene.kernels.iter().all(|named| named.id() != k.id())).map(Kernel::id).collect_vec();
+    if !unnamed.is_empty() {
+        omissions.push(Omission { what: format!("kernels {}", unnamed.join(", ")), why: "the scene does not name them".into(), saved: None });
+    }
+    if !scene.disorders.is_empty() && scene.claims.iter().all(needs_regular) {
+        omissions.push(Omission { what: "all disordered particles".into(), why: "no claim is about disorder".into(), saved: None });
+    }
+    let independent = scene.disorders.iter().filter(|d| d.entry().moves == Moves::All).map(|d| d.model().to_owned()).collect_vec();
+    if !independent.is_empty() {
+        omissions.push(Omission {
+            what: format!("offsets of R/Δ under {}", independent.join(", ")),
+            why: "sums over independent displacements do not oscillate with R/Δ".into(),
+            saved: None,
+        });
+    }
+    omissions
+}
+
+fn needs_regular(claim: &Claim) -> bool {
+    !matches!(&claim.statement, Statement::PowerLaw { quantity, .. } if quantity.is_disordered())
+}

@@ -1,0 +1,514 @@
+//! Scenes: one analysis as a file, TOML or JSON through the same structs.
+
+use super::source::{SceneError, SceneText};
+use crate::claim::{self, Claim, Powers, Quantity, Statement, Verdict};
+use crate::exact::{Rational, int, rational_from_decimal, ratio};
+use crate::kernel::{self, Kernel};
+use crate::particles::{Disorder, Lattice, Moves, VolumeRule, lattice_by_id};
+use crate::sums::{Moment, nearest_distance};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// A scene as written. Everything but `cases` has defaults.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RawScene {
+    /// What kind of study, its title and seed.
+    #[serde(default)]
+    pub study: StudyTable,
+    /// What to place.
+    pub cases: CasesTable,
+    /// What to check.
+    #[serde(default)]
+    pub claims: ClaimsTable,
+    /// How far to vary Δ/h and d̃; defaults by dimension.
+    #[serde(default)]
+    pub ladders: LaddersTable,
+    /// How many samples of disorder.
+    #[serde(default)]
+    pub samples: SamplesTable,
+    /// How columns are compared.
+    #[serde(default)]
+    pub comparison: ComparisonTable,
+    /// What is admitted.
+    #[serde(default)]
+    pub limits: LimitsTable,
+    /// The verdict expected of each claim; exit code 1 if another comes out.
+    #[serde(default)]
+    pub expect: BTreeMap<String, Verdict>,
+}
+
+/// `[study]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct StudyTable {
+    /// `moment-orders`: exponents of moment sums.
+    pub kind: String,
+    /// A title for the report.
+    pub title: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+impl Default for StudyTable {
+    fn default() -> Self {
+        Self { kind: "moment-orders".into(), title: String::new(), seed: 1 }
+    }
+}
+
+/// `[cases]`: every combination is a case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CasesTable {
+    /// Ids of kernels.
+    pub kernels: Vec<String>,
+    /// Ids of lattices; they bring their dimension with them.
+    pub lattices: Vec<String>,
+    /// `MODEL:AMPLITUDE`; the amplitude holds at the finest rung of a Δ/h ladder and is the largest of a d̃ ladder.
+    #[serde(default)]
+    pub disorders: Vec<String>,
+    /// `constant`, `number-density`.
+    #[serde(default = "constant_volumes")]
+    pub volume_rules: Vec<String>,
+}
+
+fn constant_volumes() -> Vec<String> {
+    vec![VolumeRule::Constant.id().into()]
+}
+
+/// `[claims]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct ClaimsTable {
+    /// Ids of claims, or groups of them (`fatehi-table-2`).
+    #[serde(rename = "use")]
+    pub chosen: Vec<String>,
+    /// Claims of one's own.
+    pub own: Vec<OwnClaim>,
+}
+
+impl Default for ClaimsTable {
+    fn default() -> Self {
+        Self { chosen: vec!["fatehi-table-2".into()], own: Vec::new() }
+    }
+}
+
+/// `[[claims.own]]`: the quantity is of the order d̃^displacement h^h (Δ/h)^dx_over_h.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OwnClaim {
+    /// A name; it appears as `own/NAME`.
+    pub name: String,
+    /// A moment sum: `sum_dw`, `b_inverse`, ….
+    pub moment: String,
+    /// `regular-value`, `regular-deviation` or `disorder-deviation`.
+    pub quantity: String,
+    /// Exponent of d̃, a rational in beta.
+    #[serde(default = "zero_text")]
+    pub displacement: String,
+    /// Exponent of h.
+    #[serde(default = "zero_text")]
+    pub h: String,
+    /// Exponent of Δ/h.
+    pub dx_over_h: String,
+}
+
+fn zero_text() -> String {
+    "0".into()
+}
+
+/// `[ladders]`: entries for single dimensions; a dimension without one has the default.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct LaddersTable {
+    /// Δ/h on regular particles, by exact sums.
+    pub regular: Vec<DxLadder>,
+    /// Δ/h on disordered particles, d̃ and h held.
+    pub disorder: Vec<DxLadder>,
+    /// d̃ at one Δ/h.
+    pub displacement: Vec<DisplacementLadder>,
+}
+
+/// A ladder in Δ/h: whole R/Δ in geometric steps, each with offsets over one spacing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DxLadder {
+    /// D.
+    pub dimension: u8,
+    /// Smallest R/Δ.
+    pub from: u32,
+    /// Largest R/Δ.
+    pub to: u32,
+    /// How many rungs.
+    pub rungs: u32,
+    /// Over how many offsets k/offsets of R/Δ the envelope is taken (sums over displaced lattices of independent particles
+    /// do not oscillate and take the half-integer alone).
+    pub offsets: u32,
+}
+
+/// A ladder in d̃: from the scene's amplitude down in factors of two.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DisplacementLadder {
+    /// D.
+    pub dimension: u8,
+    /// R/Δ at which it stands.
+    pub support_over_dx: f64,
+    /// How many rungs.
+    pub rungs: u32,
+}
+
+/// `[samples]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct SamplesTable {
+    /// Samples in a block: what is stored at once.
+    pub block: u64,
+    /// The relative standard error of every root mean square at which sampling stops.
+    pub precision: f64,
+    /// The most blocks.
+    pub most_blocks: u64,
+}
+
+impl Default for SamplesTable {
+    fn default() -> Self {
+        Self { block: 64, precision: 0.02, most_blocks: 32 }
+    }
+}
+
+/// `[comparison]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct ComparisonTable {
+    /// Margin of the equivalence test of exponents.
+    pub margin: f64,
+}
+
+impl Default for ComparisonTable {
+    fn default() -> Self {
+        Self { margin: 0.25 }
+    }
+}
+
+/// `[limits]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct LimitsTable {
+    /// Admit disorder under which neighbours can meet; affected cases become `inconclusive` instead of numbers.
+    pub allow_degenerate: bool,
+    /// Memory that one task may take.
+    pub memory_mib: u64,
+}
+
+impl Default for LimitsTable {
+    fn default() -> Self {
+        Self { allow_degenerate: false, memory_mib: 2048 }
+    }
+}
+
+/// A scene whose names are resolved and whose numbers are checked.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// Name: that of its folder, or of its file.
+    pub name: String,
+    /// As written.
+    pub raw: RawScene,
+    /// SHA-256 of the canonical form of `raw`, in hexadecimal.
+    pub sha256: String,
+    /// Whether ladders and samples were shortened for a first look.
+    pub quick: bool,
+    /// The kernels.
+    pub kernels: Vec<Kernel>,
+    /// The lattices.
+    pub lattices: Vec<Lattice>,
+    /// The disorders, without `none`.
+    pub disorders: Vec<Disorder>,
+    /// The volume rules.
+    pub rules: Vec<VolumeRule>,
+    /// The claims.
+    pub claims: Vec<Claim>,
+}
+
+impl Scene {
+    /// Reads a scene from a file, or from `scene.toml` or `scene.json` in a folder.
+    ///
+    /// # Errors
+    /// [`SceneError`] with line and column where there is one.
+    pub fn read(path: &Path, quick: bool) -> Result<Self, SceneError> {
+        let file = match path.is_dir() {
+            true => ["scene.toml", "scene.json"].map(|name| path.join(name)).into_iter().find(|p| p.is_file()),
+            false => Some(path.to_owned()),
+        };
+        let nowhere = SceneText { path: path.to_owned(), text: String::new() };
+        let file = file.ok_or_else(|| nowhere.error("this folder holds neither scene.toml nor scene.json"))?;
+        let text = std::fs::read_to_string(&file)
+            .map_err(|error| nowhere.error(format!("cannot be read as a scene ({error}): give a scene file, or a folder with scene.toml")))?;
+        let named = if file.file_stem().is_some_and(|stem| stem == "scene") {
+            file.canonicalize().ok().and_then(|full| full.parent().map(Path::to_owned))
+        } else {
+            Some(file.with_extension(""))
+        };
+        let name = named.as_deref().and_then(Path::file_name).and_then(|n| n.to_str()).unwrap_or("scene").to_owned();
+        Self::from_text(&SceneText { path: file, text }, &name, quick)
+    }
+
+    /// Reads a scene from its text.
+    ///
+    /// # Errors
+    /// As [`Scene::read`].
+    pub fn from_text(text: &SceneText, name: &str, quick: bool) -> Result<Self, SceneError> {
+        let raw: RawScene = if text.is_json() {
+            serde_json::from_str(&text.text).map_err(|error| {
+                let line_start: usize = text.text.split_inclusive('\n').take(error.line().max(1) - 1).map(str::len).sum();
+                let at = (line_start + error.column().saturating_sub(1)).min(text.text.len());
+                let message = error.to_string();
+                let message = message.split(" at line ").next().unwrap_or_default().to_owned();
+                SceneError { scene: text.clone(), span: Some(at..at), message, help: None }
+            })?
+        } else {
+            toml::from_str(&text.text).map_err(|error| SceneError {
+                scene: text.clone(),
+                span: error.span(),
+                message: error.message().to_owned(),
+                help: None,
+            })?
+        };
+        Self::resolve(raw, text, name, quick)
+    }
+
+    fn resolve(raw: RawScene, text: &SceneText, name: &str, quick: bool) -> Result<Self, SceneError> {
+        if raw.study.kind != "moment-orders" {
+            let message = format!("there is no study of kind '{}'", raw.study.kind);
+            return Err(text.error_at("study.kind", message, Some("write kind = \"moment-orders\"")));
+        }
+        let at = |keys: String, message: String| text.error_at(&keys, message, None);
+        let kernels = each(&raw.cases.kernels, "cases.kernels", at, |id| kernel::by_id(id))?;
+        let lattices = each(&raw.cases.lattices, "cases.lattices", at, |id| lattice_by_id(id))?;
+        let rules = each(&raw.cases.volume_rules, "cases.volume_rules", at, |id| VolumeRule::by_id(id))?;
+        for (list, key) in [(kernels.len(), "kernels"), (lattices.len(), "lattices"), (rules.len(), "volume_rules")] {
+            if list == 0 {
+                return Err(at(format!("cases.{key}"), format!("names no {key}: give at least one")));
+            }
+        }
+        let allow = raw.limits.allow_degenerate;
+        let disorders = each(&raw.cases.disorders, "cases.disorders", at, |text| {
+            let disorder = Disorder::parse(text)?;
+            if !allow {
+                disorder.check_reach()?;
+            }
+            Ok::<_, crate::particles::ParticleError>(disorder)
+        })?;
+        let disorders: Vec<Disorder> =
+            disorders.into_iter().filter(|disorder| disorder.entry().moves != Moves::Nothing).collect();
+        let claims = resolve_claims(&raw, at)?;
+        for (index, (id, _)) in raw.expect.iter().enumerate() {
+            if !claims.iter().any(|claim| claim.id == *id) {
+                let _ = index;
+                return Err(at(format!("expect.{id}"), format!("expects a verdict on '{id}', which is not among the scene's claims")));
+            }
+        }
+        let disordered = |claim: &Claim| matches!(&claim.statement, Statement::PowerLaw { quantity, .. } if quantity.is_disordered());
+        if disorders.is_empty() && claims.iter().any(disordered) {
+            return Err(text.error_at(
+                "cases",
+                "the claims need disorder, and cases.disorders names no model",
+                Some("for example disorders = [\"offset:0.1\", \"box:0.4\"]"),
+            ));
+        }
+        check_numbers(&raw, &lattices, at)?;
+        let canonical = serde_json::to_string(&raw).map_err(|error| text.error(error.to_string()))?;
+        let sha256 = Sha256::digest(canonical.as_bytes()).iter().fold(String::new(), |mut hex, byte| {
+            let _ = write!(hex, "{byte:02x}");
+            hex
+        });
+        Ok(Self { name: name.to_owned(), raw, sha256, quick, kernels, lattices, disorders, rules, claims })
+    }
+
+    /// The ladder in Δ/h on regular particles: by rung, R/Δ and its offsets.
+    pub fn regular_ladder(&self, dimension: usize) -> Vec<Vec<Rational>> {
+        let default = [(8, 512, 13, 16), (8, 256, 15, 16), (6, 96, 13, 16)][dimension - 1];
+        let ladder = dx_ladder(&self.raw.ladders.regular, dimension, default);
+        self.supports(&ladder, ladder.offsets)
+    }
+
+    /// The ladder in Δ/h under a disorder.
+    pub fn disorder_ladder(&self, dimension: usize, moves: Moves) -> Vec<Vec<Rational>> {
+        let default = [(4, 256, 11, 8), (4, 48, 11, 8), (3, 16, 10, 8)][dimension - 1];
+        let ladder = dx_ladder(&self.raw.ladders.disorder, dimension, default);
+        match moves {
+            Moves::All => self.supports(&ladder, 1).into_iter().map(|rung| vec![&rung[0] + ratio(1, 2)]).collect(),
+            _ => self.supports(&ladder, ladder.offsets),
+        }
+    }
+
+    /// R/Δ of the ladder in d̃, and the factors of the amplitude, falling.
+    pub fn displacement_ladder(&self, dimension: usize) -> (Rational, Vec<f64>) {
+        let default = [(8.5, 8), (6.5, 8), (4.5, 8)][dimension - 1];
+        let own = self.raw.ladders.displacement.iter().find(|ladder| usize::from(ladder.dimension) == dimension);
+        let (support, rungs) = own.map_or(default, |ladder| (ladder.support_over_dx, ladder.rungs));
+        let support = rational_from_decimal(support).unwrap_or_else(|_| int(0));
+        let rungs = if self.quick { rungs.min(5) } else { rungs };
+        (support, (0..rungs).map(|step| 0.5_f64.powi(step as i32)).collect())
+    }
+
+    /// The most blocks, and the relative precision at which sampling stops.
+    pub fn sampling(&self) -> (u64, f64) {
+        let samples = &self.raw.samples;
+        if self.quick { (samples.most_blocks.min(2), samples.precision.max(0.1)) } else { (samples.most_blocks, samples.precision) }
+    }
+
+    fn supports(&self, ladder: &DxLadder, offsets: u32) -> Vec<Vec<Rational>> {
+        // A first look stops at a third of the reach, but keeps the two octaves that a fit needs.
+        let to = if self.quick { (ladder.to / 3).max(4 * ladder.from).min(ladder.to) } else { ladder.to };
+        let steps = ladder.rungs.max(2) - 1;
+        let ratio_of_ends = f64::from(to) / f64::from(ladder.from);
+        let mut rungs: Vec<i64> = (0..=steps)
+            .map(|step| {
+                let exponent = f64::from(step) / f64::from(steps);
+                (f64::from(ladder.from) * libm::pow(ratio_of_ends, exponent)).round() as i64
+            })
+            .collect();
+        rungs.dedup();
+        let offsets = i64::from(offsets.max(1));
+        rungs.iter().map(|rung| (0..offsets).map(|k| int(*rung) + ratio(k, offsets)).collect()).collect()
+    }
+}
+
+fn dx_ladder(own: &[DxLadder], dimension: usize, (from, to, rungs, offsets): (u32, u32, u32, u32)) -> DxLadder {
+    let default = DxLadder { dimension: dimension as u8, from, to, rungs, offsets };
+    own.iter().find(|ladder| usize::from(ladder.dimension) == dimension).cloned().unwrap_or(default)
+}
+
+/// Resolves a list of names, with the place of the one at fault.
+fn each<T, E: std::fmt::Display>(
+    names: &[String],
+    keys: &str,
+    at: impl Fn(String, String) -> SceneError,
+    resolve: impl Fn(&str) -> Result<T, E>,
+) -> Result<Vec<T>, SceneError> {
+    let resolved = names.iter().enumerate().map(|(index, name)| {
+        if names[..index].contains(name) {
+            return Err(at(format!("{keys}.{index}"), format!("names '{name}' twice")));
+        }
+        resolve(name).map_err(|error| at(format!("{keys}.{index}"), error.to_string()))
+    });
+    resolved.collect()
+}
+
+fn resolve_claims(raw: &RawScene, at: impl Fn(String, String) -> SceneError) -> Result<Vec<Claim>, SceneError> {
+    let mut claims: Vec<Claim> = Vec::new();
+    for (index, name) in raw.claims.chosen.iter().enumerate() {
+        let chosen = claim::select(name).map_err(|error| at(format!("claims.use.{index}"), error.to_string()))?;
+        for claim in chosen {
+            if claims.iter().all(|known| known.id != claim.id) {
+                claims.push(claim);
+            }
+        }
+    }
+    for (index, own) in raw.claims.own.iter().enumerate() {
+        let place = |field: &str| format!("claims.own.{index}.{field}");
+        let moment = Moment::by_name(&own.moment).map_err(|error| at(place("moment"), error.to_string()))?;
+        let quantity = Quantity::by_id(&own.quantity).ok_or_else(|| {
+            let message = format!("there is no quantity '{}': write regular-value, regular-deviation or disorder-deviation", own.quantity);
+            at(place("quantity"), message)
+        })?;
+        let powers = Powers::parse(&own.displacement, &own.h, &own.dx_over_h)
+            .map_err(|error| at(place("dx_over_h"), error.to_string()))?;
+        powers.check(moment).map_err(|error| at(place("h"), error.to_string()))?;
+        claims.push(Claim {
+            id: format!("own/{}", own.name),
+            source: "scene".into(),
+            location: format!("[[claims.own]] {}", index + 1),
+            text: format!("{} = {powers}", quantity.formula(moment)),
+            moment,
+            statement: Statement::PowerLaw { quantity, powers },
+            dimensions: &[1, 2, 3],
+        });
+    }
+    if claims.is_empty() {
+        return Err(at("claims".into(), "the scene checks no claim: name one under [claims] use".into()));
+    }
+    Ok(claims)
+}
+
+fn check_numbers(
+    raw: &RawScene,
+    lattices: &[Lattice],
+    at: impl Fn(String, String) -> SceneError,
+) -> Result<(), SceneError> {
+    let lists = [("regular", &raw.ladders.regular), ("disorder", &raw.ladders.disorder)];
+    for (name, list) in lists {
+        for (index, ladder) in list.iter().enumerate() {
+            let place = |field: &str| format!("ladders.{name}.{index}.{field}");
+            if !(1..=3).contains(&ladder.dimension) {
+                return Err(at(place("dimension"), format!("dimension {} is not 1, 2 or 3", ladder.dimension)));
+            }
+            if ladder.from == 0 {
+                return Err(at(place("from"), "R/Δ must be positive".into()));
+            }
+            if ladder.to < 4 * ladder.from {
+                let message = format!("the window {} … {} spans less than two octaves, which decides no order: raise `to` to at least {}", ladder.from, ladder.to, 4 * ladder.from);
+                return Err(at(place("to"), message));
+            }
+            if ladder.rungs < 5 {
+                return Err(at(place("rungs"), format!("{} rungs decide no order: give at least 5", ladder.rungs)));
+            }
+            if ladder.offsets == 0 {
+                return Err(at(place("offsets"), "an envelope needs at least one offset".into()));
+            }
+            for lattice in lattices.iter().filter(|lattice| lattice.dimension() == usize::from(ladder.dimension)) {
+                let nearest = nearest_distance(lattice);
+                if f64::from(ladder.from) <= nearest {
+                    let message = format!("R/Δ = {} leaves particle i without neighbours on lattice '{}', whose nearest is at {nearest} Δ", ladder.from, lattice.id());
+                    return Err(at(place("from"), message));
+                }
+                let sites = lattice.estimate_within(f64::from(ladder.to) + 1.0);
+                let needed = sites * 400.0 / f64::from(1 << 20);
+                if needed > raw.limits.memory_mib as f64 {
+                    let message = format!("R/Δ = {} on lattice '{}' needs about {needed:.0} MiB for {sites:.2e} sites, more than the {} MiB of limits.memory_mib", ladder.to, lattice.id(), raw.limits.memory_mib);
+                    return Err(at(place("to"), message));
+                }
+            }
+        }
+    }
+    for (index, ladder) in raw.ladders.displacement.iter().enumerate() {
+        let place = |field: &str| format!("ladders.displacement.{index}.{field}");
+        if !(1..=3).contains(&ladder.dimension) {
+            return Err(at(place("dimension"), format!("dimension {} is not 1, 2 or 3", ladder.dimension)));
+        }
+        let support = ladder.support_over_dx;
+        if !support.is_finite() || support <= 0.0 {
+            return Err(at(place("support_over_dx"), format!("R/Δ = {support} must be finite and positive")));
+        }
+        if ladder.rungs < 5 || ladder.rungs > 40 {
+            return Err(at(place("rungs"), format!("{} rungs: give 5 to 40 halvings of the amplitude", ladder.rungs)));
+        }
+        for lattice in lattices.iter().filter(|lattice| lattice.dimension() == usize::from(ladder.dimension)) {
+            let nearest = nearest_distance(lattice);
+            if support <= nearest {
+                let message = format!("R/Δ = {support} leaves particle i without neighbours on lattice '{}', whose nearest is at {nearest} Δ", lattice.id());
+                return Err(at(place("support_over_dx"), message));
+            }
+            let needed = lattice.estimate_within(support + 1.0) * 400.0 / f64::from(1 << 20);
+            if needed > raw.limits.memory_mib as f64 {
+                let message = format!("R/Δ = {support} on lattice '{}' needs about {needed:.0} MiB, more than the {} MiB of limits.memory_mib", lattice.id(), raw.limits.memory_mib);
+                return Err(at(place("support_over_dx"), message));
+            }
+        }
+    }
+    let samples = &raw.samples;
+    if samples.block < 2 || samples.most_blocks < 1 {
+        return Err(at("samples.block".into(), "sampling needs blocks of at least 2 samples, and at least one block".into()));
+    }
+    if !(samples.precision.is_finite() && samples.precision > 0.0) {
+        return Err(at("samples.precision".into(), format!("the precision {} must be finite and positive", samples.precision)));
+    }
+    if !(raw.comparison.margin.is_finite() && raw.comparison.margin > 0.0) {
+        return Err(at("comparison.margin".into(), format!("the margin {} must be finite and positive", raw.comparison.margin)));
+    }
+    Ok(())
+}
