@@ -3,11 +3,14 @@
 //! Uses floating point and random numbers (and the exact lattice sums, the ground that both columns are checked against);
 //! never the derived column.
 
+mod double_double;
+mod error;
 pub mod fit;
 mod regular;
 mod sample;
 pub mod window;
 
+pub use error::{FitError, Input};
 pub use regular::{RegularNorm, RegularRung, RegularSpec, regular_rung};
 pub use sample::{
     CLOSEST, MomentStatistics, SampleBlock, SampleError, SampleSpec, Sampler, Summary, is_precise, summarise,
