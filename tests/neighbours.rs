@@ -13,8 +13,8 @@ use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use remainder::particles::cloud::{ClosestPair, Cloud, CloudError, LENGTH_LIMIT, Quantity, Support};
-use remainder::particles::neighbours::{Neighbour, Neighbours};
+use remainder::particles::{ClosestPair, Cloud, CloudError, LENGTH_LIMIT, Quantity, Support};
+use remainder::particles::{Neighbour, Neighbours};
 
 type Lists = Vec<Vec<Neighbour>>;
 

@@ -75,8 +75,16 @@ pub fn judge_power_law(published: [f64; 2], measured: [Measured; 2], margin: f64
     };
     let each = [0, 1].map(|index| compare_exponent(published[index], measured[index], margin));
     if each == [Comparison::Equal; 2] {
-        let shown = if published[0] == 0.0 && measured[0] == Measured::exactly(0.0) { show(1) } else { format!("{} and {}", show(0), show(1)) };
-        let claim = if published[0] == 0.0 { format!("{}", published[1]) } else { format!("{} and {}", published[0], published[1]) };
+        let shown = if published[0] == 0.0 && measured[0] == Measured::exactly(0.0) {
+            show(1)
+        } else {
+            format!("{} and {}", show(0), show(1))
+        };
+        let claim = if published[0] == 0.0 {
+            format!("{}", published[1])
+        } else {
+            format!("{} and {}", published[0], published[1])
+        };
         return Judgement {
             verdict: Verdict::Confirmed,
             why: format!("{shown} equals the published {claim} within ±{margin}."),
@@ -85,7 +93,11 @@ pub fn judge_power_law(published: [f64; 2], measured: [Measured; 2], margin: f64
     // The ratio of the measured law to the printed one, δ^first (Δ/h)^second.
     let difference = |index: usize| {
         let m: Measured = measured[index];
-        Measured { value: m.value - published[index], low: m.low - published[index], high: m.high - published[index] }
+        Measured {
+            value: m.value - published[index],
+            low: m.low - published[index],
+            high: m.high - published[index],
+        }
     };
     let (first, x) = (difference(0), difference(1));
     let second = Measured { value: first.value + x.value, low: first.low + x.low, high: first.high + x.high };

@@ -30,14 +30,22 @@ impl BetaExponent {
         let plain: String = text.replace('β', "beta").chars().filter(|c| !c.is_whitespace()).collect();
         let number = |text: &str| parse_rational(text).map_err(|_| fault());
         let Some((before, after)) = plain.split_once("beta") else {
-            return Ok(Self { slope: Rational::zero(), constant: number(&plain)?, even_beta_adds: Rational::zero() });
+            return Ok(Self {
+                slope: Rational::zero(),
+                constant: number(&plain)?,
+                even_beta_adds: Rational::zero(),
+            });
         };
         let slope = match before {
             "" | "+" => Rational::one(),
             "-" => -Rational::one(),
             factor => number(factor.strip_suffix('*').unwrap_or(factor))?,
         };
-        let constant = if after.is_empty() { Rational::zero() } else { number(after.strip_prefix('+').unwrap_or(after))? };
+        let constant = if after.is_empty() {
+            Rational::zero()
+        } else {
+            number(after.strip_prefix('+').unwrap_or(after))?
+        };
         Ok(Self { slope, constant, even_beta_adds: Rational::zero() })
     }
 
@@ -105,7 +113,11 @@ impl Powers {
         if found == int(i64::from(moment.length_power())) {
             return Ok(());
         }
-        Err(ClaimError::Dimension { moment: moment.name(), found: rational_text(&found), needed: moment.length_power() })
+        Err(ClaimError::Dimension {
+            moment: moment.name(),
+            found: rational_text(&found),
+            needed: moment.length_power(),
+        })
     }
 }
 
@@ -119,7 +131,8 @@ impl fmt::Display for Powers {
             other => Some(format!("{name}^{{{other}}}")),
         };
         let factors = [("d̃", &self.displacement), ("h", &self.h), ("(Δ/h)", &self.dx_over_h)];
-        let factors: Vec<String> = factors.iter().filter_map(|(name, exponent)| factor(name, exponent)).collect();
+        let factors: Vec<String> =
+            factors.iter().filter_map(|(name, exponent)| factor(name, exponent)).collect();
         write!(f, "O({})", if factors.is_empty() { "1".into() } else { factors.join(" ") })
     }
 }

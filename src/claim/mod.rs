@@ -43,7 +43,9 @@ impl Quantity {
 
     /// The quantity of this name.
     pub fn by_id(id: &str) -> Option<Self> {
-        [Self::RegularValue, Self::RegularDeviation, Self::DisorderDeviation].into_iter().find(|q| q.id() == id)
+        [Self::RegularValue, Self::RegularDeviation, Self::DisorderDeviation]
+            .into_iter()
+            .find(|q| q.id() == id)
     }
 
     /// Whether it is taken on disordered particles.
@@ -70,7 +72,7 @@ pub enum Statement {
         /// The quantity.
         quantity: Quantity,
         /// a, b, c, each a rational in β.
-        powers: Powers,
+        powers: Box<Powers>,
     },
     /// The moment vanishes on regular particles.
     Zero,
@@ -107,9 +109,11 @@ pub fn catalogue() -> Vec<Claim> {
 pub fn select(name: &str) -> Result<Vec<Claim>, ClaimError> {
     let known = catalogue();
     let group = |claim: &Claim| claim.id.split('/').next().unwrap_or_default().to_owned();
-    let chosen: Vec<Claim> = known.iter().filter(|claim| claim.id == name || group(claim) == name).cloned().collect();
+    let chosen: Vec<Claim> =
+        known.iter().filter(|claim| claim.id == name || group(claim) == name).cloned().collect();
     if chosen.is_empty() {
-        let mut names: Vec<String> = known.iter().flat_map(|claim| [claim.id.clone(), group(claim)]).collect();
+        let mut names: Vec<String> =
+            known.iter().flat_map(|claim| [claim.id.clone(), group(claim)]).collect();
         names.dedup();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         return Err(ClaimError::Unknown { name: name.to_owned(), nearest: nearest(name, &names) });

@@ -16,7 +16,8 @@ pub struct CaseVerdict {
 /// One verdict for all cases. Where they differ it is `conditional`, and the reason names the fewest labels that decide
 /// it. Inconclusive cases do not overrule the others, but the reason names them.
 pub fn roll_up(cases: &[CaseVerdict]) -> Judgement {
-    let decided: Vec<&CaseVerdict> = cases.iter().filter(|case| case.verdict != Verdict::Inconclusive).collect();
+    let decided: Vec<&CaseVerdict> =
+        cases.iter().filter(|case| case.verdict != Verdict::Inconclusive).collect();
     let undecided = cases.iter().filter(|case| case.verdict == Verdict::Inconclusive).collect_vec();
     let caveat = if undecided.is_empty() || decided.is_empty() {
         String::new()
@@ -49,7 +50,8 @@ fn label(case: &CaseVerdict, axes: &[usize]) -> String {
 }
 
 fn varying(cases: &[CaseVerdict]) -> Vec<usize> {
-    let axes = (0..5).filter(|axis| cases.iter().map(|case| &case.labels[*axis]).unique().count() > 1).collect_vec();
+    let axes =
+        (0..5).filter(|axis| cases.iter().map(|case| &case.labels[*axis]).unique().count() > 1).collect_vec();
     if axes.is_empty() { vec![0] } else { axes }
 }
 
@@ -76,7 +78,8 @@ mod tests {
     #[test]
     fn the_condition_is_the_fewest_labels_that_decide() {
         use Verdict::{Bound, Confirmed, Inconclusive, Refuted};
-        let by_model = [case("1-D", "offset", Confirmed), case("2-D", "offset", Confirmed), case("1-D", "box", Refuted)];
+        let by_model =
+            [case("1-D", "offset", Confirmed), case("2-D", "offset", Confirmed), case("1-D", "box", Refuted)];
         let rolled = roll_up(&by_model);
         assert_eq!(rolled.verdict, Verdict::Conditional);
         assert_eq!(rolled.why, "confirmed for offset; refuted for box");

@@ -20,7 +20,6 @@ pub enum Verdict {
     Inconclusive,
 }
 
-
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {

@@ -35,8 +35,10 @@ pub(super) fn list(arguments: &ListArguments) -> Result<Exit, Failure> {
     let chosen = all.into_iter().filter(|(which, _, _)| arguments.what.is_none_or(|what| what == *which));
     if arguments.json {
         let groups = chosen.map(|(_, name, entries)| {
-            let entries: Vec<Value> =
-                entries.iter().map(|(id, what, source)| json!({"id": id, "what": what, "source": source})).collect();
+            let entries: Vec<Value> = entries
+                .iter()
+                .map(|(id, what, source)| json!({"id": id, "what": what, "source": source}))
+                .collect();
             (name.to_owned(), Value::from(entries))
         });
         let value = Value::Object(groups.collect());
@@ -61,7 +63,9 @@ fn kernels() -> Vec<Entry> {
 }
 
 fn lattices() -> Vec<Entry> {
-    let what = |l: &lattice::Lattice| format!("{}, {}-D, {} particle(s) a cell", l.name(), l.dimension(), l.basis().len());
+    let what = |l: &lattice::Lattice| {
+        format!("{}, {}-D, {} particle(s) a cell", l.name(), l.dimension(), l.basis().len())
+    };
     lattice::catalogue().iter().map(|l| (l.id().into(), what(l), String::new())).collect()
 }
 
@@ -71,10 +75,15 @@ fn disorders() -> Vec<Entry> {
 
 fn volume_rules() -> Vec<Entry> {
     let what = |rule| match rule {
-        VolumeRule::Constant => ("ω = volume of the cell over the particles in it", "fatehi-manzari-2011, §4.1"),
+        VolumeRule::Constant => {
+            ("ω = volume of the cell over the particles in it", "fatehi-manzari-2011, §4.1")
+        }
         VolumeRule::NumberDensity => ("V = 1/ΣW", "chaussonnet-2015, Eq. (1)"),
     };
-    VolumeRule::ALL.iter().map(|rule| (rule.id().into(), what(*rule).0.into(), what(*rule).1.into())).collect()
+    VolumeRule::ALL
+        .iter()
+        .map(|rule| (rule.id().into(), what(*rule).0.into(), what(*rule).1.into()))
+        .collect()
 }
 
 fn moments() -> Vec<Entry> {

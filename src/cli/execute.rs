@@ -51,7 +51,8 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
     });
     write_report(&out, &report, &timings)?;
     if arguments.json {
-        let text = serde_json::to_string_pretty(&report).unwrap_or_else(|error| unreachable!("plain data: {error}"));
+        let text =
+            serde_json::to_string_pretty(&report).unwrap_or_else(|error| unreachable!("plain data: {error}"));
         print_out(&format!("{text}\n"));
     } else {
         print_out(&terminal::table(&report));

@@ -27,7 +27,8 @@ struct State {
 impl Progress {
     pub(super) fn new() -> Self {
         let interactive = std::io::stderr().is_terminal();
-        let target = if interactive { ProgressDrawTarget::stderr_with_hz(8) } else { ProgressDrawTarget::hidden() };
+        let target =
+            if interactive { ProgressDrawTarget::stderr_with_hz(8) } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(Some(0), target);
         let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {elapsed} + {eta}  {wide_msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
@@ -55,7 +56,7 @@ impl Progress {
                 *state.seconds.entry(label).or_default() += seconds;
             }
         }
-        let tenths = if state.cost == 0 { 10 } else { state.done * 10 / state.cost };
+        let tenths = (state.done * 10).checked_div(state.cost).unwrap_or(10);
         if !self.interactive && tenths > state.tenths {
             state.tenths = tenths;
             eprintln!("{} of {} tasks, {} % of the work", state.finished, state.tasks, tenths * 10);

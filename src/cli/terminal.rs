@@ -13,7 +13,9 @@ pub(super) fn table(report: &Report) -> String {
         let _ = writeln!(text, "{}\n", report.provenance.title);
     }
     let rows = || sections.iter().flat_map(|section| &section.rows);
-    let width = |measure: &dyn Fn(&crate::report::Row) -> usize, least: usize| rows().map(measure).max().unwrap_or(0).max(least);
+    let width = |measure: &dyn Fn(&crate::report::Row) -> usize, least: usize| {
+        rows().map(measure).max().unwrap_or(0).max(least)
+    };
     let widths = [
         width(&|row| row.case.chars().count(), 4),
         width(&|row| row.published.chars().count(), 9),
@@ -24,7 +26,9 @@ pub(super) fn table(report: &Report) -> String {
         section_text(&mut text, section, widths, coloured);
     }
     let mut counts = Vec::new();
-    for verdict in [Verdict::Confirmed, Verdict::Bound, Verdict::Conditional, Verdict::Refuted, Verdict::Inconclusive] {
+    for verdict in
+        [Verdict::Confirmed, Verdict::Bound, Verdict::Conditional, Verdict::Refuted, Verdict::Inconclusive]
+    {
         let count = sections.iter().filter(|section| section.verdict == verdict).count();
         if count > 0 {
             counts.push(format!("{count} {verdict}"));

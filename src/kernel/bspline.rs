@@ -14,7 +14,12 @@ pub fn cubic_spline() -> Kernel {
 
 /// Quintic spline, R = 3h (Chaussonnet et al. 2015).
 pub fn quintic_spline() -> Kernel {
-    Kernel::of_catalogue("quintic-spline", "quintic B-spline", "schoenberg-1946; chaussonnet-2015, §II.B", central(5))
+    Kernel::of_catalogue(
+        "quintic-spline",
+        "quintic B-spline",
+        "schoenberg-1946; chaussonnet-2015, §II.B",
+        central(5),
+    )
 }
 
 /// The central B-spline of this degree on q ≥ 0, from its truncated powers: on each piece those that are positive there.

@@ -25,7 +25,8 @@ pub fn sphere_monomial(dimension: usize, monomial: &MultiIndex) -> Rational {
     }
     let odd_factors = powers.iter().flat_map(|power| (1..i64::from(*power)).step_by(2));
     let numerator: i64 = odd_factors.product();
-    let denominator: i64 = (0..i64::from(monomial.order()) / 2).map(|step| dimension as i64 + 2 * step).product();
+    let denominator: i64 =
+        (0..i64::from(monomial.order()) / 2).map(|step| dimension as i64 + 2 * step).product();
     int(numerator) / int(denominator)
 }
 
@@ -42,7 +43,8 @@ impl Kernel {
             for term in terms {
                 let radial = &self.radial_function(term.radial)[piece];
                 let weight = sphere_monomial(dimension, &term.monomial) * int(term.coefficient);
-                let shift = i64::from(term.monomial.order()) + dimension as i64 - 1 - radial.denominator_power as i64;
+                let shift =
+                    i64::from(term.monomial.order()) + dimension as i64 - 1 - radial.denominator_power as i64;
                 for (e, coefficient) in radial.numerator.coefficients().iter().enumerate() {
                     *laurent.entry(e as i64 + shift).or_default() += coefficient * &weight;
                 }
@@ -50,7 +52,8 @@ impl Kernel {
             }
             for (exponent, coefficient) in laurent.into_iter().filter(|(_, c)| !c.is_zero()) {
                 assert!(exponent >= 0, "the summand of a moment is integrable at the origin");
-                total += coefficient * (power(&to, exponent + 1) - power(&from, exponent + 1)) / int(exponent + 1);
+                total +=
+                    coefficient * (power(&to, exponent + 1) - power(&from, exponent + 1)) / int(exponent + 1);
             }
         }
         total / self.radial_moment(dimension - 1)

@@ -49,12 +49,16 @@ impl<T: Float> Evaluator<T> {
                         let piece = &pieces[index];
                         // q = κ (x_right − s): numerator in s; G_k in units of R carries κ^{2k} and κ^{-n} from q^{-n}.
                         let q_of_s = Polynomial::new(vec![piece.to.clone(), -kappa.clone()]);
-                        let in_s = piece.numerator.compose(&q_of_s).scale(&power(
-                            kappa,
-                            2 * k as i64 - piece.denominator_power as i64,
-                        ));
-                        let coefficients =
-                            in_s.coefficients().iter().rev().map(|c| cast(rational_to_f64(c) * sigma)).collect();
+                        let in_s = piece
+                            .numerator
+                            .compose(&q_of_s)
+                            .scale(&power(kappa, 2 * k as i64 - piece.denominator_power as i64));
+                        let coefficients = in_s
+                            .coefficients()
+                            .iter()
+                            .rev()
+                            .map(|c| cast(rational_to_f64(c) * sigma))
+                            .collect();
                         (coefficients, piece.denominator_power)
                     })
                     .collect();

@@ -4,7 +4,7 @@
 //! behaviour at the origin and at each knot, the derivatives, the continuum moments) is computed from w. This is the
 //! only layer that the derived and the measured column share.
 //!
-//! A new family is one file beside [`wendland`] and [`bspline`] and one line in [`catalogue`].
+//! A new family is one file beside `wendland.rs` and `bspline.rs` and one line in [`catalogue`].
 
 mod bspline;
 mod continuum;
@@ -42,6 +42,8 @@ pub fn by_id(id: &str) -> Result<Kernel, KernelError> {
     let ids: Vec<&str> = known.iter().map(Kernel::id).collect();
     match ids.iter().position(|candidate| *candidate == id) {
         Some(index) => Ok(known[index].clone()),
-        None => Err(KernelError::Unknown { id: id.to_owned(), nearest: nearest(id, &ids), known: ids.join(", ") }),
+        None => {
+            Err(KernelError::Unknown { id: id.to_owned(), nearest: nearest(id, &ids), known: ids.join(", ") })
+        }
     }
 }

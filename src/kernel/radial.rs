@@ -43,7 +43,8 @@ impl Kernel {
     /// # Errors
     /// [`KernelError::Zero`] if w vanishes, [`KernelError::NotNormalisable`] if ∫ w q^{D−1} dq ≤ 0 for a D of 1, 2, 3.
     pub fn new(id: &str, name: &str, citation: &str, profile: Piecewise) -> Result<Self, KernelError> {
-        let kernel = Self { id: id.to_owned(), name: name.to_owned(), citation: citation.to_owned(), profile };
+        let kernel =
+            Self { id: id.to_owned(), name: name.to_owned(), citation: citation.to_owned(), profile };
         if kernel.profile.pieces().iter().all(Polynomial::is_zero) {
             return Err(KernelError::Zero { id: kernel.id });
         }
@@ -63,7 +64,8 @@ impl Kernel {
         profile: Result<Piecewise, ExactError>,
     ) -> Self {
         let profile = profile.unwrap_or_else(|error| unreachable!("catalogue entry {id}: {error}"));
-        Self::new(id, name, citation, profile).unwrap_or_else(|error| unreachable!("catalogue entry {id}: {error}"))
+        Self::new(id, name, citation, profile)
+            .unwrap_or_else(|error| unreachable!("catalogue entry {id}: {error}"))
     }
 
     /// The id used in scenes and reports.
@@ -154,8 +156,10 @@ impl Kernel {
                         power += 2;
                     }
                 }
-                let lowest = numerator.coefficients().iter().position(|c| !c.is_zero()).unwrap_or(0).min(power);
-                let numerator = Polynomial::new(numerator.coefficients().iter().skip(lowest).cloned().collect());
+                let lowest =
+                    numerator.coefficients().iter().position(|c| !c.is_zero()).unwrap_or(0).min(power);
+                let numerator =
+                    Polynomial::new(numerator.coefficients().iter().skip(lowest).cloned().collect());
                 RadialPiece {
                     from: knots[index].clone(),
                     to: knots[index + 1].clone(),

@@ -57,7 +57,12 @@ const BITS: [u32; 3] = [160, 320, 640];
 /// As [`LatticeSums::new`], [`LatticeSums::count`] and [`LatticeSums::enclose`].
 pub fn regular_rung(spec: &RegularSpec, group: &PointGroup) -> Result<RegularRung, SumError> {
     let Some(largest) = spec.supports.iter().max() else {
-        return Ok(RegularRung { supports: Vec::new(), norms: Vec::new(), in_support: Vec::new(), exact_sums: 0 });
+        return Ok(RegularRung {
+            supports: Vec::new(),
+            norms: Vec::new(),
+            in_support: Vec::new(),
+            exact_sums: 0,
+        });
     };
     let sums = LatticeSums::new(&spec.kernel, &spec.lattice, largest, &spec.moments, spec.memory_mib)?;
     let dimension = spec.lattice.dimension();
@@ -66,7 +71,9 @@ pub fn regular_rung(spec: &RegularSpec, group: &PointGroup) -> Result<RegularRun
     let free: Vec<_> = reductions.iter().map(Reduction::free).collect();
     let limits: Vec<Vec<Rational>> = free
         .iter()
-        .map(|components| components.iter().map(|c| spec.kernel.continuum_limit(dimension, &c.terms)).collect())
+        .map(|components| {
+            components.iter().map(|c| spec.kernel.continuum_limit(dimension, &c.terms)).collect()
+        })
         .collect();
     let mut rung =
         RegularRung { supports: Vec::new(), norms: Vec::new(), in_support: Vec::new(), exact_sums: 0 };
@@ -94,7 +101,8 @@ pub fn regular_rung(spec: &RegularSpec, group: &PointGroup) -> Result<RegularRun
                     total.round(2 * bits)
                 };
                 let (value, deviation) = (squares(false), squares(true));
-                let accurate = |square: &Enclosure| square.relative_accuracy_bits().is_some_and(|bits| bits >= 48);
+                let accurate =
+                    |square: &Enclosure| square.relative_accuracy_bits().is_some_and(|bits| bits >= 48);
                 norm = norm_of(&value, &deviation);
                 if components.is_empty() || (accurate(&value) && accurate(&deviation)) {
                     break;
@@ -112,7 +120,11 @@ fn norm_of(value: &Enclosure, deviation: &Enclosure) -> RegularNorm {
         let (low, high) = square.bounds_f64();
         let (low, high) = (low.max(0.0).sqrt(), high.max(0.0).sqrt());
         // Not shown to differ from zero at the last precision: zero by value.
-        if low == 0.0 { (0.0, high) } else { (0.5 * (low + high), 0.5 * (high - low) * (1.0 + 4.0 * f64::EPSILON)) }
+        if low == 0.0 {
+            (0.0, high)
+        } else {
+            (0.5 * (low + high), 0.5 * (high - low) * (1.0 + 4.0 * f64::EPSILON))
+        }
     };
     let (value, deviation) = (root(value), root(deviation));
     RegularNorm { value: value.0, deviation: deviation.0, radius: value.1.max(deviation.1) }

@@ -301,7 +301,8 @@ pub struct Summary {
 pub fn summarise(blocks: &[SampleBlock], moment: usize) -> Summary {
     let samples: u64 = blocks.iter().map(|block| block.samples - block.degenerate).sum();
     let n = samples as f64;
-    let add = |field: fn(&MomentStatistics) -> f64| blocks.iter().map(|b| field(&b.moments[moment])).sum::<f64>();
+    let add =
+        |field: fn(&MomentStatistics) -> f64| blocks.iter().map(|b| field(&b.moments[moment])).sum::<f64>();
     if samples == 0 {
         return Summary { samples, rms: 0.0, rms_error: 0.0, mean: 0.0, max: 0.0 };
     }

@@ -125,7 +125,9 @@ impl Lattice {
 
     /// The unit of each axis in floating point, √s_a.
     pub fn axis_units(&self) -> [f64; 3] {
-        std::array::from_fn(|a| if a < self.dimension { rational_to_f64(&self.axis_squares[a]).sqrt() } else { 0.0 })
+        std::array::from_fn(|a| {
+            if a < self.dimension { rational_to_f64(&self.axis_squares[a]).sqrt() } else { 0.0 }
+        })
     }
 
     /// Whether the vector k joins two cells.
@@ -179,10 +181,14 @@ impl Lattice {
                 for c0 in -reach[0]..=reach[0] {
                     for (b, offset) in self.basis.iter().enumerate() {
                         let k: SiteIndex = std::array::from_fn(|a| {
-                            c0 * self.vectors[0][a] + c1 * self.vectors[1][a] + c2 * self.vectors[2][a] + offset[a]
+                            c0 * self.vectors[0][a]
+                                + c1 * self.vectors[1][a]
+                                + c2 * self.vectors[2][a]
+                                + offset[a]
                         });
                         let position: [f64; 3] = std::array::from_fn(|a| k[a] as f64 * units[a]);
-                        let square = position[0] * position[0] + position[1] * position[1] + position[2] * position[2];
+                        let square =
+                            position[0] * position[0] + position[1] * position[1] + position[2] * position[2];
                         if square <= limit {
                             visit([c0, c1, c2], b, k, position);
                         }
@@ -218,7 +224,8 @@ fn determinant_of(rows: &[SiteIndex; 3], dimension: usize) -> i64 {
         1 => m[0][0],
         2 => m[0][0] * m[1][1] - m[0][1] * m[1][0],
         _ => {
-            m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+            m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
+                - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
                 + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
         }
     }
@@ -264,8 +271,10 @@ pub fn lattice_by_id(id: &str) -> Result<Lattice, ParticleError> {
     let ids: Vec<&str> = known.iter().map(Lattice::id).collect();
     match ids.iter().position(|candidate| *candidate == id) {
         Some(index) => Ok(known[index].clone()),
-        None => {
-            Err(ParticleError::UnknownLattice { id: id.to_owned(), nearest: nearest(id, &ids), known: ids.join(", ") })
-        }
+        None => Err(ParticleError::UnknownLattice {
+            id: id.to_owned(),
+            nearest: nearest(id, &ids),
+            known: ids.join(", "),
+        }),
     }
 }

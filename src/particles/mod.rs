@@ -11,7 +11,7 @@ mod stream;
 mod symmetry;
 mod volume;
 
-pub use cloud::{Cloud, CloudError, Support};
+pub use cloud::{ClosestPair, Cloud, CloudError, LENGTH_LIMIT, PERIODS_LIMIT, Quantity, Support};
 pub use disorder::{Disorder, DisorderModel, Moves};
 pub use error::ParticleError;
 pub use lattice::{Lattice, Site, SiteIndex, lattice_by_id};

@@ -37,8 +37,8 @@ impl SampleStream {
     pub fn words(&mut self, site: &Site) -> SiteWords {
         let stream = self.sample.wrapping_mul(STREAMS_PER_SAMPLE).wrapping_add(site.basis as u64);
         let place = |c: i64| (c + HALF_RANGE) as u128;
-        let position =
-            ((place(site.cell[2]) << 42) | (place(site.cell[1]) << 21) | place(site.cell[0])) * WORDS_PER_SITE;
+        let position = ((place(site.cell[2]) << 42) | (place(site.cell[1]) << 21) | place(site.cell[0]))
+            * WORDS_PER_SITE;
         if self.at.0 != stream {
             self.generator.set_stream(stream);
             self.at = (stream, u128::MAX);
@@ -61,7 +61,13 @@ mod tests {
 
     #[test]
     fn the_order_of_visits_does_not_change_a_site() {
-        let sites = [site([0, 0, 0], 0), site([1, 0, 0], 0), site([-7, 3, 2], 0), site([-7, 3, 2], 1), site([5, 5, 5], 0)];
+        let sites = [
+            site([0, 0, 0], 0),
+            site([1, 0, 0], 0),
+            site([-7, 3, 2], 0),
+            site([-7, 3, 2], 1),
+            site([5, 5, 5], 0),
+        ];
         let mut forward = SampleStream::new(11, 3);
         let there: Vec<_> = sites.iter().map(|s| forward.words(s)).collect();
         let mut back = SampleStream::new(11, 3);
@@ -74,8 +80,12 @@ mod tests {
     fn samples_seeds_sites_and_basis_particles_differ() {
         let words = |seed, sample, cell, basis| SampleStream::new(seed, sample).words(&site(cell, basis));
         let reference = words(1, 0, [0, 0, 0], 0);
-        for other in [words(2, 0, [0, 0, 0], 0), words(1, 1, [0, 0, 0], 0), words(1, 0, [1, 0, 0], 0), words(1, 0, [0, 0, 0], 1)]
-        {
+        for other in [
+            words(2, 0, [0, 0, 0], 0),
+            words(1, 1, [0, 0, 0], 0),
+            words(1, 0, [1, 0, 0], 0),
+            words(1, 0, [0, 0, 0], 1),
+        ] {
             assert_ne!(reference, other);
         }
     }

@@ -41,7 +41,8 @@ impl PointGroup {
                     let (chosen, product) = (chosen.clone(), &product);
                     candidates.iter().filter_map(move |candidate| {
                         let fits = product(candidate, candidate) == product(vector, vector)
-                            && (0..row).all(|i| product(candidate, &chosen[i]) == product(vector, &vectors[i]));
+                            && (0..row)
+                                .all(|i| product(candidate, &chosen[i]) == product(vector, &vectors[i]));
                         fits.then(|| [chosen.as_slice(), &[*candidate]].concat())
                     })
                 })
@@ -67,9 +68,14 @@ impl PointGroup {
 
     /// Whether r → −r is among them.
     pub fn has_inversion(&self) -> bool {
-        let minus: Operation = std::array::from_fn(|a| std::array::from_fn(|b| if a == b { int(-1) } else { int(0) }));
+        let minus: Operation =
+            std::array::from_fn(|a| std::array::from_fn(|b| if a == b { int(-1) } else { int(0) }));
         self.operations.iter().any(|operation| {
-            (0..3).all(|a| (0..3).all(|b| operation[a][b] == minus[a][b] || (operation[a][b].is_one() && a == b && self.unused(a))))
+            (0..3).all(|a| {
+                (0..3).all(|b| {
+                    operation[a][b] == minus[a][b] || (operation[a][b].is_one() && a == b && self.unused(a))
+                })
+            })
         })
     }
 
@@ -86,7 +92,8 @@ impl PointGroup {
     /// Axes that the lattice does not have are left alone by every operation.
     fn unused(&self, axis: usize) -> bool {
         self.operations.iter().all(|o| {
-            o[axis][axis].is_one() && (0..3).all(|b| b == axis || (o[axis][b].is_zero() && o[b][axis].is_zero()))
+            o[axis][axis].is_one()
+                && (0..3).all(|b| b == axis || (o[axis][b].is_zero() && o[b][axis].is_zero()))
         })
     }
 }
@@ -101,7 +108,8 @@ fn linear_map(vectors: &[SiteIndex], images: &[SiteIndex], dimension: usize) -> 
         1 => m(0, 0),
         2 => m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0),
         _ => {
-            m(0, 0) * (m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1)) - m(0, 1) * (m(1, 0) * m(2, 2) - m(1, 2) * m(2, 0))
+            m(0, 0) * (m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1))
+                - m(0, 1) * (m(1, 0) * m(2, 2) - m(1, 2) * m(2, 0))
                 + m(0, 2) * (m(1, 0) * m(2, 1) - m(1, 1) * m(2, 0))
         }
     };
@@ -132,7 +140,10 @@ fn apply(operation: &Operation, k: &SiteIndex) -> Option<SiteIndex> {
 fn carries_basis_onto_itself(lattice: &Lattice, operation: &Operation) -> bool {
     lattice.basis().iter().all(|particle| {
         apply(operation, particle).is_some_and(|image| {
-            lattice.basis().iter().any(|other| lattice.is_lattice_vector(std::array::from_fn(|a| image[a] - other[a])))
+            lattice
+                .basis()
+                .iter()
+                .any(|other| lattice.is_lattice_vector(std::array::from_fn(|a| image[a] - other[a])))
         })
     })
 }

@@ -55,9 +55,10 @@ pub fn assemble(outcome: &Outcome) -> Report {
 fn entry(judged: &JudgedCase, margin: f64) -> ClaimEntry {
     let claim = &judged.claim;
     let (kind, published) = match &claim.statement {
-        Statement::Zero => {
-            (ClaimKind::Zero, Column { zero: Some(Zero { holds: true, by: None, bound: None }), ..Column::default() })
-        }
+        Statement::Zero => (
+            ClaimKind::Zero,
+            Column { zero: Some(Zero { holds: true, by: None, bound: None }), ..Column::default() },
+        ),
         Statement::PowerLaw { powers, .. } => {
             let printed = |exponent: &crate::claim::BetaExponent| {
                 Some(Estimate::exact(rational_text(&exponent.at(judged.case.beta)), Source::Print))
@@ -82,8 +83,16 @@ fn entry(judged: &JudgedCase, margin: f64) -> ClaimEntry {
                 Source::Identity,
             );
             let exponents = Exponents {
-                displacement: Some(if disordered { fitted(*displacement) } else { Estimate::exact("0", Source::Identity) }),
-                h: Some(if disordered { h } else { Estimate::exact(claim.moment.length_power().to_string(), Source::Identity) }),
+                displacement: Some(if disordered {
+                    fitted(*displacement)
+                } else {
+                    Estimate::exact("0", Source::Identity)
+                }),
+                h: Some(if disordered {
+                    h
+                } else {
+                    Estimate::exact(claim.moment.length_power().to_string(), Source::Identity)
+                }),
                 dx_over_h: Some(fitted(*dx_over_h)),
                 ..Exponents::default()
             };
@@ -136,7 +145,9 @@ fn case(case: &CaseId) -> Case {
 fn fit(ladder: &LadderFit) -> Option<Fit> {
     let law = ladder.fit.as_ref().ok()?;
     let round = |value| significant(value, DIGITS);
-    let estimate = |e: crate::measured::fit::Estimate| Estimate::float(round(e.value), round(e.low), round(e.high), Source::Fit);
+    let estimate = |e: crate::measured::fit::Estimate| {
+        Estimate::float(round(e.value), round(e.low), round(e.high), Source::Fit)
+    };
     let mut residuals = law.residuals.iter();
     let points = ladder.rungs.iter().enumerate().map(|(index, rung)| {
         let reason = ladder.reason(index);

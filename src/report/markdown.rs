@@ -7,9 +7,11 @@ use std::fmt::Write as _;
 /// `report.md`: the verdicts first, then the cases of each claim, then what was left out.
 pub fn markdown(report: &Report) -> String {
     let mut text = String::new();
-    let title = if report.provenance.title.is_empty() { &report.provenance.scene } else { &report.provenance.title };
+    let title =
+        if report.provenance.title.is_empty() { &report.provenance.scene } else { &report.provenance.title };
     let _ = writeln!(text, "# {title}\n");
-    let first_look = if report.provenance.quick { " A first look: ladders and samples were shortened." } else { "" };
+    let first_look =
+        if report.provenance.quick { " A first look: ladders and samples were shortened." } else { "" };
     let _ = writeln!(
         text,
         "Scene `{}` (SHA-256 {}…), seed {}, remainder {}.{first_look}\n",
@@ -27,7 +29,11 @@ pub fn markdown(report: &Report) -> String {
             cell(&section.statement),
             cell(&section.location),
             section.verdict,
-            section.expected.filter(|e| *e != section.verdict).map(|e| format!(" (expected {e})")).unwrap_or_default(),
+            section
+                .expected
+                .filter(|e| *e != section.verdict)
+                .map(|e| format!(" (expected {e})"))
+                .unwrap_or_default(),
             cell(&section.why)
         );
     }
@@ -45,7 +51,11 @@ pub fn markdown(report: &Report) -> String {
         let _ = writeln!(text, "- {}: {}{saved}", item.what, item.why);
     }
     let cost = report.cost;
-    let _ = writeln!(text, "\nTaken: {} exact sums, {} samples, {} pairs.", cost.exact_sums, cost.samples, cost.pairs);
+    let _ = writeln!(
+        text,
+        "\nTaken: {} exact sums, {} samples, {} pairs.",
+        cost.exact_sums, cost.samples, cost.pairs
+    );
     text
 }
 

@@ -48,7 +48,8 @@ pub fn sections(report: &Report) -> Vec<Section> {
         .verdicts
         .iter()
         .map(|rolled| {
-            let entries: Vec<&ClaimEntry> = report.claims.iter().filter(|claim| claim.id == rolled.id).collect();
+            let entries: Vec<&ClaimEntry> =
+                report.claims.iter().filter(|claim| claim.id == rolled.id).collect();
             Section {
                 id: rolled.id.clone(),
                 location: entries.first().map(|entry| entry.citation.location.clone()).unwrap_or_default(),
@@ -100,11 +101,13 @@ fn row(entry: &ClaimEntry, shown: &[&str]) -> Row {
     let exponent = |column: &Option<Column>, which: fn(&super::Exponents) -> &Option<Estimate>| {
         column.as_ref().and_then(|c| c.exponents.as_ref()).and_then(|e| which(e).clone())
     };
-    let published = match (exponent(&entry.published, |e| &e.displacement), exponent(&entry.published, |e| &e.dx_over_h)) {
-        (Some(d), Some(x)) if number(&d.value) == "0" => number(&x.value),
-        (Some(d), Some(x)) => format!("{}, {}", number(&d.value), number(&x.value)),
-        _ => "0".into(),
-    };
+    let published =
+        match (exponent(&entry.published, |e| &e.displacement), exponent(&entry.published, |e| &e.dx_over_h))
+        {
+            (Some(d), Some(x)) if number(&d.value) == "0" => number(&x.value),
+            (Some(d), Some(x)) => format!("{}, {}", number(&d.value), number(&x.value)),
+            _ => "0".into(),
+        };
     let zero = entry.measured.as_ref().and_then(|column| column.zero.as_ref());
     let dx_over_h = match (exponent(&entry.measured, |e| &e.dx_over_h), zero) {
         (Some(x), _) => interval(&x),

@@ -57,9 +57,10 @@ pub fn check_target(folder: &Path) -> Result<(), WriteError> {
 fn check_folder(folder: &Path) -> Result<(), WriteError> {
     let existing = folder.ancestors().find(|path| path.exists());
     match existing {
-        Some(path) if !path.is_dir() => {
-            Err(WriteError::Foreign { path: path.to_owned(), what: "a file stands where a folder is needed".into() })
-        }
+        Some(path) if !path.is_dir() => Err(WriteError::Foreign {
+            path: path.to_owned(),
+            what: "a file stands where a folder is needed".into(),
+        }),
         _ => Ok(()),
     }
 }
@@ -71,7 +72,8 @@ fn check_folder(folder: &Path) -> Result<(), WriteError> {
 pub fn write_report(folder: &Path, report: &Report, timings: &serde_json::Value) -> Result<(), WriteError> {
     check_target(folder)?;
     fs::create_dir_all(folder).map_err(|source| WriteError::File { path: folder.to_owned(), source })?;
-    let files = [("report.json", pretty(report)), ("report.md", markdown(report)), ("timings.json", pretty(timings))];
+    let files =
+        [("report.json", pretty(report)), ("report.md", markdown(report)), ("timings.json", pretty(timings))];
     for (name, text) in files {
         let path = folder.join(name);
         write_whole(&path, text.as_bytes()).map_err(|source| WriteError::File { path, source })?;
@@ -81,7 +83,8 @@ pub fn write_report(folder: &Path, report: &Report, timings: &serde_json::Value)
 
 /// JSON for people and diffs: indented, with a newline at the end.
 fn pretty<T: Serialize>(value: &T) -> String {
-    let mut text = serde_json::to_string_pretty(value).unwrap_or_else(|error| unreachable!("plain data: {error}"));
+    let mut text =
+        serde_json::to_string_pretty(value).unwrap_or_else(|error| unreachable!("plain data: {error}"));
     text.push('\n');
     text
 }

@@ -48,7 +48,9 @@ pub enum StudyError {
         what: String,
     },
     /// Blocks are missing where all should be stored.
-    #[error("{missing} of {tasks} tasks are not complete in the store, for example {example}: run the remaining shards first")]
+    #[error(
+        "{missing} of {tasks} tasks are not complete in the store, for example {example}: run the remaining shards first"
+    )]
     Incomplete {
         /// Tasks without all their blocks.
         missing: usize,

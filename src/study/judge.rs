@@ -103,7 +103,8 @@ impl Bench<'_> {
                 MeasuredColumn::ZeroBySymmetry,
                 Judgement {
                     verdict: Verdict::Confirmed,
-                    why: "every component vanishes by the point group of the site, for every radial kernel.".into(),
+                    why: "every component vanishes by the point group of the site, for every radial kernel."
+                        .into(),
                 },
             ),
             Statement::Zero => {
@@ -111,7 +112,9 @@ impl Bench<'_> {
                 let largest = fit.map_or(0.0, |fit| fit.rungs.iter().map(|rung| rung.y).fold(0.0, f64::max));
                 let judgement = Judgement {
                     verdict: if largest > 0.0 { Verdict::Refuted } else { Verdict::Inconclusive },
-                    why: format!("the point group of the site does not force it, and it reaches {largest:.2e} in units of h."),
+                    why: format!(
+                        "the point group of the site does not force it, and it reaches {largest:.2e} in units of h."
+                    ),
                 };
                 (MeasuredColumn::NotZero(largest), judgement)
             }
@@ -133,15 +136,17 @@ impl Bench<'_> {
         quantity: Quantity,
         powers: &Powers,
     ) -> (MeasuredColumn, Judgement) {
-        let published =
-            [&powers.displacement, &powers.dx_over_h].map(|exponent| rational_to_f64(&exponent.at(case.beta)));
+        let published = [&powers.displacement, &powers.dx_over_h]
+            .map(|exponent| rational_to_f64(&exponent.at(case.beta)));
         let mut fits = Vec::new();
         let mut exponent = |bench: &mut Self, varies: Varies| {
             let fit = bench.fit(claim, case, quantity, varies).ok_or("no ladder was planned for it")?;
             fits.push(fit.id.clone());
             let lost = bench.degenerate(case, varies);
             if lost > 0 {
-                return Err(format!("{lost} samples had two particles within 1e-12 Δ and were not evaluated"));
+                return Err(format!(
+                    "{lost} samples had two particles within 1e-12 Δ and were not evaluated"
+                ));
             }
             match &fit.fit {
                 Err(error) => Err(format!("along {}: {error}", varies.id())),
@@ -152,8 +157,11 @@ impl Bench<'_> {
             }
         };
         let along_dx = exponent(self, Varies::DxOverH);
-        let along_d =
-            if quantity.is_disordered() { exponent(self, Varies::Displacement) } else { Ok(Measured::exactly(0.0)) };
+        let along_d = if quantity.is_disordered() {
+            exponent(self, Varies::Displacement)
+        } else {
+            Ok(Measured::exactly(0.0))
+        };
         match (along_d, along_dx) {
             (Ok(displacement), Ok(dx_over_h)) => {
                 let judgement = judge_power_law(published, [displacement, dx_over_h], self.margin);
@@ -169,12 +177,16 @@ impl Bench<'_> {
     /// The fit, made once.
     fn fit(&mut self, claim: &Claim, case: &CaseId, quantity: Quantity, varies: Varies) -> Option<LadderFit> {
         let known = self.fits.iter().find(|fit| {
-            fit.moment == claim.moment && fit.quantity == quantity && fit.varies == varies && fit.case == *case
+            fit.moment == claim.moment
+                && fit.quantity == quantity
+                && fit.varies == varies
+                && fit.case == *case
         });
         if let Some(fit) = known {
             return Some(fit.clone());
         }
-        let ladder = self.plan.ladders.iter().find(|ladder| ladder.case == *case && ladder.varies == varies)?;
+        let ladder =
+            self.plan.ladders.iter().find(|ladder| ladder.case == *case && ladder.varies == varies)?;
         let fit = fit_ladder(self.plan, ladder, self.results, claim.moment, quantity)?;
         self.fits.push(fit.clone());
         Some(fit)
@@ -182,7 +194,8 @@ impl Bench<'_> {
 
     /// Samples of a ladder that were not evaluated because particles coincide.
     fn degenerate(&self, case: &CaseId, varies: Varies) -> u64 {
-        let ladders = self.plan.ladders.iter().filter(|ladder| ladder.case == *case && ladder.varies == varies);
+        let ladders =
+            self.plan.ladders.iter().filter(|ladder| ladder.case == *case && ladder.varies == varies);
         let tasks = ladders.flat_map(|ladder| ladder.rungs.iter().flatten());
         tasks
             .map(|task| match &self.results[*task] {

@@ -21,7 +21,8 @@ pub(super) fn fit_ladder(
         .rungs
         .iter()
         .filter_map(|tasks| {
-            let points = tasks.iter().flat_map(|task| points_of(plan, *task, results, index, quantity, ladder));
+            let points =
+                tasks.iter().flat_map(|task| points_of(plan, *task, results, index, quantity, ladder));
             // The envelope: the largest over the offsets of R/Δ, at the R/Δ where it is reached.
             points.max_by(|a, b| a.y.total_cmp(&b.y))
         })
@@ -39,7 +40,16 @@ pub(super) fn fit_ladder(
     let fit = power_law(&points, &WindowOptions::default()).map_err(|error| error.to_string());
     let id = format!("{}/{}/{}/{}", moment.name(), quantity.id(), ladder.case.path(), ladder.varies.id());
     let held = held(&ladder.case, ladder.varies, &rungs);
-    Some(LadderFit { id, case: ladder.case.clone(), moment, quantity, varies: ladder.varies, held, rungs, fit })
+    Some(LadderFit {
+        id,
+        case: ladder.case.clone(),
+        moment,
+        quantity,
+        varies: ladder.varies,
+        held,
+        rungs,
+        fit,
+    })
 }
 
 fn points_of(

@@ -29,7 +29,12 @@ pub struct CaseId {
 }
 
 impl CaseId {
-    pub(super) fn new(kernel: &Kernel, lattice: &Lattice, disorder: Option<&Disorder>, rule: VolumeRule) -> Self {
+    pub(super) fn new(
+        kernel: &Kernel,
+        lattice: &Lattice,
+        disorder: Option<&Disorder>,
+        rule: VolumeRule,
+    ) -> Self {
         Self {
             dimension: lattice.dimension(),
             kernel: kernel.id().to_owned(),

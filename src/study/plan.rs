@@ -9,7 +9,7 @@ use crate::claim::{Claim, Quantity, Statement};
 use crate::exact::{Rational, rational_text, rational_to_f64};
 use crate::kernel::Kernel;
 use crate::measured::{RegularSpec, SampleSpec};
-use crate::particles::{Disorder, Lattice, Moves, PointGroup, VolumeRule};
+use crate::particles::{Disorder, Lattice, Moves, PointGroup, SiteIndex, VolumeRule};
 use crate::sums::{Moment, Reduction};
 use itertools::Itertools;
 use serde::Serialize;
@@ -116,7 +116,8 @@ impl Plan {
         if moments.is_empty() {
             return;
         }
-        let free: usize = moments.iter().map(|moment| Reduction::of(*moment, lattice, group).free().len()).sum();
+        let free: usize =
+            moments.iter().map(|moment| Reduction::of(*moment, lattice, group).free().len()).sum();
         let mut rungs = Vec::new();
         for supports in scene.regular_ladder(lattice.dimension()) {
             self.exact_sums += (free * supports.len()) as u64;
@@ -169,9 +170,15 @@ impl Plan {
         });
         let rungs = rungs.collect_vec();
         let (support, factors) = scene.displacement_ladder(dimension);
-        let heights = factors.iter().map(|factor| vec![push(&support, disorder.amplitude() * factor)]).collect_vec();
+        let heights =
+            factors.iter().map(|factor| vec![push(&support, disorder.amplitude() * factor)]).collect_vec();
         let moments = moments.to_vec();
-        self.ladders.push(LadderPlan { case: case.clone(), varies: Varies::DxOverH, moments: moments.clone(), rungs });
+        self.ladders.push(LadderPlan {
+            case: case.clone(),
+            varies: Varies::DxOverH,
+            moments: moments.clone(),
+            rungs,
+        });
         self.ladders.push(LadderPlan { case, varies: Varies::Displacement, moments, rungs: heights });
     }
 }
@@ -199,7 +206,9 @@ impl Task {
     /// Estimated work in pairs, if every sample is needed.
     pub fn cost(&self, scene: &Scene) -> u64 {
         match self {
-            Self::Regular(spec) => spec.supports.iter().map(|s| spec.lattice.estimate_within(rational_to_f64(s)) as u64).sum(),
+            Self::Regular(spec) => {
+                spec.supports.iter().map(|s| spec.lattice.estimate_within(rational_to_f64(s)) as u64).sum()
+            }
             Self::Samples { spec, .. } => {
                 let (blocks, _) = scene.sampling();
                 blocks * scene.raw.samples.block * sample_pairs(spec)
@@ -213,42 +222,47 @@ impl Task {
         struct Inputs {
             engine: &'static str,
             kernel: Vec<(String, Vec<String>)>,
-            lattice: (usize, Vec<String>, Vec<[i64; 3]>, Vec<[i64; 3]>),
+            dimension: usize,
+            axis_squares: Vec<String>,
+            vectors: Vec<SiteIndex>,
+            basis: Vec<SiteIndex>,
             rule: VolumeRule,
             moments: Vec<Moment>,
             supports: Vec<String>,
             disorder: Option<(String, f64, u64)>,
         }
-        let kernel = |kernel: &Kernel| {
+        let profile = |kernel: &Kernel| {
             let profile = kernel.profile();
             let pieces = profile.pieces().iter().zip(&profile.knots()[1..]);
-            pieces.map(|(p, knot)| (rational_text(knot), p.coefficients().iter().map(rational_text).collect())).collect()
+            pieces
+                .map(|(p, knot)| (rational_text(knot), p.coefficients().iter().map(rational_text).collect()))
+                .collect()
         };
-        let lattice = |lattice: &Lattice| {
-            let squares = lattice.axis_squares().iter().map(rational_text).collect();
-            (lattice.dimension(), squares, lattice.vectors().to_vec(), lattice.basis().to_vec())
+        let (kernel, lattice, rule, moments) = match self {
+            Self::Regular(spec) => (profile(&spec.kernel), &spec.lattice, spec.rule, &spec.moments),
+            Self::Samples { spec, .. } => (profile(&spec.kernel), &spec.lattice, spec.rule, &spec.moments),
         };
-        let inputs = match self {
-            Self::Regular(spec) => Inputs {
-                engine: ENGINE,
-                kernel: kernel(&spec.kernel),
-                lattice: lattice(&spec.lattice),
-                rule: spec.rule,
-                moments: spec.moments.clone(),
-                supports: spec.supports.iter().map(rational_text).collect(),
-                disorder: None,
-            },
-            Self::Samples { spec, support } => Inputs {
-                engine: ENGINE,
-                kernel: kernel(&spec.kernel),
-                lattice: lattice(&spec.lattice),
-                rule: spec.rule,
-                moments: spec.moments.clone(),
-                supports: vec![rational_text(support)],
-                disorder: Some((spec.disorder.model().to_owned(), spec.amplitude, spec.seed)),
-            },
+        let (supports, disorder) = match self {
+            Self::Regular(spec) => (spec.supports.iter().map(rational_text).collect(), None),
+            Self::Samples { spec, support } => (
+                vec![rational_text(support)],
+                Some((spec.disorder.model().to_owned(), spec.amplitude, spec.seed)),
+            ),
         };
-        let canonical = serde_json::to_vec(&inputs).unwrap_or_else(|error| unreachable!("plain data: {error}"));
+        let inputs = Inputs {
+            engine: ENGINE,
+            kernel,
+            dimension: lattice.dimension(),
+            axis_squares: lattice.axis_squares().iter().map(rational_text).collect(),
+            vectors: lattice.vectors().to_vec(),
+            basis: lattice.basis().to_vec(),
+            rule,
+            moments: moments.clone(),
+            supports,
+            disorder,
+        };
+        let canonical =
+            serde_json::to_vec(&inputs).unwrap_or_else(|error| unreachable!("plain data: {error}"));
         Sha256::digest(canonical).iter().fold(String::new(), |mut hex, byte| {
             let _ = write!(hex, "{byte:02x}");
             hex
@@ -282,7 +296,9 @@ fn regular_moments(claims: &[Claim], lattice: &Lattice, group: &PointGroup) -> V
 }
 
 fn disordered_moments(claims: &[Claim]) -> Vec<Moment> {
-    let needs = |claim: &&Claim| matches!(claim.statement, Statement::PowerLaw { quantity: Quantity::DisorderDeviation, .. });
+    let needs = |claim: &&Claim| {
+        matches!(claim.statement, Statement::PowerLaw { quantity: Quantity::DisorderDeviation, .. })
+    };
     claims.iter().filter(needs).map(|claim| claim.moment).sorted().dedup().collect()
 }
 
@@ -296,12 +312,22 @@ fn omissions(scene: &Scene, groups: &[PointGroup]) -> Vec<Omission> {
             if zero + equal > 0 {
                 omissions.push(Omission {
                     what: format!("components of {moment} on {}", lattice.id()),
-                    why: format!("{zero} vanish and {equal} equal another by the symmetry of the site ({} operations)", group.order()),
-                    saved: Some(format!("{} of {} exact sums per R/Δ", zero + equal, reduction.components.len())),
+                    why: format!(
+                        "{zero} vanish and {equal} equal another by the symmetry of the site ({} operations)",
+                        group.order()
+                    ),
+                    saved: Some(format!(
+                        "{} of {} exact sums per R/Δ",
+                        zero + equal,
+                        reduction.components.len()
+                    )),
                 });
             }
         }
-        for claim in claims.iter().filter(|claim| needs_regular(claim) && Reduction::of(claim.moment, lattice, group).vanishes()) {
+        for claim in claims
+            .iter()
+            .filter(|claim| needs_regular(claim) && Reduction::of(claim.moment, lattice, group).vanishes())
+        {
             omissions.push(Omission {
                 what: format!("{} on regular {}", claim.moment, lattice.id()),
                 why: "vanishes by the symmetry of the site".into(),
@@ -310,11 +336,17 @@ fn omissions(scene: &Scene, groups: &[PointGroup]) -> Vec<Omission> {
         }
     }
     let asked: Vec<Moment> = scene.claims.iter().map(|claim| claim.moment).sorted().dedup().collect();
-    let not_asked = Moment::all(4).into_iter().filter(|moment| !asked.contains(moment)).map(Moment::name).collect_vec();
+    let not_asked =
+        Moment::all(4).into_iter().filter(|moment| !asked.contains(moment)).map(Moment::name).collect_vec();
     if !not_asked.is_empty() {
-        omissions.push(Omission { what: format!("moments {}", not_asked.join(", ")), why: "no claim asks for them".into(), saved: None });
+        omissions.push(Omission {
+            what: format!("moments {}", not_asked.join(", ")),
+            why: "no claim asks for them".into(),
+            saved: None,
+        });
     }
-    let dimensions = (1..=3).filter(|d| scene.lattices.iter().all(|lattice| lattice.dimension() != *d)).collect_vec();
+    let dimensions =
+        (1..=3).filter(|d| scene.lattices.iter().all(|lattice| lattice.dimension() != *d)).collect_vec();
     if !dimensions.is_empty() {
         omissions.push(Omission {
             what: format!("dimension {}", dimensions.iter().join(", ")),
@@ -323,14 +355,31 @@ fn omissions(scene: &Scene, groups: &[PointGroup]) -> Vec<Omission> {
         });
     }
     let kernels = crate::kernel::catalogue();
-    let unnamed = kernels.iter().filter(|k| scene.kernels.iter().all(|named| named.id() != k.id())).map(Kernel::id).collect_vec();
+    let unnamed = kernels
+        .iter()
+        .filter(|k| scene.kernels.iter().all(|named| named.id() != k.id()))
+        .map(Kernel::id)
+        .collect_vec();
     if !unnamed.is_empty() {
-        omissions.push(Omission { what: format!("kernels {}", unnamed.join(", ")), why: "the scene does not name them".into(), saved: None });
+        omissions.push(Omission {
+            what: format!("kernels {}", unnamed.join(", ")),
+            why: "the scene does not name them".into(),
+            saved: None,
+        });
     }
     if !scene.disorders.is_empty() && scene.claims.iter().all(needs_regular) {
-        omissions.push(Omission { what: "all disordered particles".into(), why: "no claim is about disorder".into(), saved: None });
+        omissions.push(Omission {
+            what: "all disordered particles".into(),
+            why: "no claim is about disorder".into(),
+            saved: None,
+        });
     }
-    let independent = scene.disorders.iter().filter(|d| d.entry().moves == Moves::All).map(|d| d.model().to_owned()).collect_vec();
+    let independent = scene
+        .disorders
+        .iter()
+        .filter(|d| d.entry().moves == Moves::All)
+        .map(|d| d.model().to_owned())
+        .collect_vec();
     if !independent.is_empty() {
         omissions.push(Omission {
             what: format!("offsets of R/Δ under {}", independent.join(", ")),

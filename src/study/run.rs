@@ -1,12 +1,12 @@
 //! Running a plan: every task, every block, from the store where it is there.
 
+use super::StudyError;
 use super::event::Event;
 use super::judge::judge;
 use super::outcome::Outcome;
 use super::plan::{Omission, Plan, Task, sample_pairs};
 use super::scene::Scene;
 use super::store::BlockStore;
-use super::StudyError;
 use crate::measured::{RegularRung, SampleBlock, Sampler, is_precise, regular_rung};
 use crate::particles::PointGroup;
 use rayon::prelude::*;
@@ -56,8 +56,11 @@ pub fn run(scene: &Scene, plan: &Plan, options: &RunOptions<'_>) -> Result<Optio
     order.sort_by_key(|index| std::cmp::Reverse(plan.tasks[*index].cost(scene)));
     let cost = order.iter().map(|index| plan.tasks[*index].cost(scene)).sum();
     (options.events)(Event::Planned { tasks: order.len(), cost });
-    let results: Vec<(usize, Result<Option<TaskResult>, StudyError>)> =
-        order.par_iter().with_max_len(1).map(|index| (*index, run_task(scene, &plan.tasks[*index], options))).collect();
+    let results: Vec<(usize, Result<Option<TaskResult>, StudyError>)> = order
+        .par_iter()
+        .with_max_len(1)
+        .map(|index| (*index, run_task(scene, &plan.tasks[*index], options)))
+        .collect();
     let mut done: Vec<Option<TaskResult>> = vec![None; plan.tasks.len()];
     let mut missing = Vec::new();
     let mut first_error: Option<(usize, StudyError)> = None;
@@ -90,13 +93,20 @@ pub fn run(scene: &Scene, plan: &Plan, options: &RunOptions<'_>) -> Result<Optio
     let results: Vec<TaskResult> = done.into_iter().flatten().collect();
     let mut outcome = judge(scene, plan, &results);
     let (blocks, precision) = scene.sampling();
-    let taken: u64 = results.iter().map(|r| if let TaskResult::Samples { blocks, .. } = r { blocks.len() as u64 } else { 0 }).sum();
+    let taken: u64 = results
+        .iter()
+        .map(|r| if let TaskResult::Samples { blocks, .. } = r { blocks.len() as u64 } else { 0 })
+        .sum();
     let tasks = results.iter().filter(|r| matches!(r, TaskResult::Samples { .. })).count() as u64;
     if taken < tasks * blocks {
         outcome.omissions.push(Omission {
             what: "samples past the wanted precision".into(),
             why: format!("every root mean square had reached a relative standard error of {precision}"),
-            saved: Some(format!("{} of {} samples", (tasks * blocks - taken) * scene.raw.samples.block, tasks * blocks * scene.raw.samples.block)),
+            saved: Some(format!(
+                "{} of {} samples",
+                (tasks * blocks - taken) * scene.raw.samples.block,
+                tasks * blocks * scene.raw.samples.block
+            )),
         });
     }
     Ok(Some(outcome))
@@ -108,9 +118,14 @@ fn run_task(scene: &Scene, task: &Task, options: &RunOptions<'_>) -> Result<Opti
     let key = task.key();
     let advanced = |cost: u64, stored: bool| (options.events)(Event::Advanced { cost, stored });
     let finished = |spared: u64| {
-        (options.events)(Event::Finished { label: task.label(), seconds: started.elapsed().as_secs_f64(), spared });
+        (options.events)(Event::Finished {
+            label: task.label(),
+            seconds: started.elapsed().as_secs_f64(),
+            spared,
+        });
     };
-    let stop_if_asked = || if options.cancel.load(Ordering::Relaxed) { Err(StudyError::Interrupted) } else { Ok(()) };
+    let stop_if_asked =
+        || if options.cancel.load(Ordering::Relaxed) { Err(StudyError::Interrupted) } else { Ok(()) };
     match task {
         Task::Regular(spec) => {
             let stored: Option<RegularRung> = options.store.load(&key, 0)?;
@@ -121,7 +136,8 @@ fn run_task(scene: &Scene, task: &Task, options: &RunOptions<'_>) -> Result<Opti
                 None => {
                     stop_if_asked()?;
                     let group = PointGroup::of(&spec.lattice);
-                    let rung = regular_rung(spec, &group).map_err(|source| StudyError::Sum { task: task.label(), source })?;
+                    let rung = regular_rung(spec, &group)
+                        .map_err(|source| StudyError::Sum { task: task.label(), source })?;
                     options.store.save(&key, 0, &rung)?;
                     rung
                 }

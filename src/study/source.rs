@@ -54,7 +54,9 @@ impl SceneText {
         let mut span = None;
         for key in keys {
             let found = match (table, list) {
-                (Some(table), _) => table.iter().find(|(k, _)| k.get_ref().as_ref() == *key).map(|(_, value)| value),
+                (Some(table), _) => {
+                    table.iter().find(|(k, _)| k.get_ref().as_ref() == *key).map(|(_, value)| value)
+                }
                 (_, Some(list)) => key.parse::<usize>().ok().and_then(|index| {
                     let list: &toml::de::DeArray<'_> = list;
                     list.get(index)

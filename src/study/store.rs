@@ -49,7 +49,8 @@ impl BlockStore {
                 Err(source) => return Err(StudyError::File { action: "cannot read", path, source }),
             };
             let foreign = |what: String| StudyError::ForeignBlock { path: path.clone(), what };
-            let stored: Stored<T> = serde_json::from_str(&text).map_err(|error| foreign(error.to_string()))?;
+            let stored: Stored<T> =
+                serde_json::from_str(&text).map_err(|error| foreign(error.to_string()))?;
             if stored.schema != SCHEMA || stored.key != key || stored.block != block || !stored.end {
                 return Err(foreign("it belongs to another case".into()));
             }
@@ -66,9 +67,16 @@ impl BlockStore {
         let path = self.folder.join(file_name(key, block));
         let stored = Stored { schema: SCHEMA.into(), key: key.into(), block, data, end: true };
         let text = serde_json::to_string(&stored).unwrap_or_else(|error| unreachable!("plain data: {error}"));
-        fs::create_dir_all(&self.folder)
-            .map_err(|source| StudyError::File { action: "cannot make folder", path: self.folder.clone(), source })?;
-        write_whole(&path, text.as_bytes()).map_err(|source| StudyError::File { action: "cannot write", path, source })
+        fs::create_dir_all(&self.folder).map_err(|source| StudyError::File {
+            action: "cannot make folder",
+            path: self.folder.clone(),
+            source,
+        })?;
+        write_whole(&path, text.as_bytes()).map_err(|source| StudyError::File {
+            action: "cannot write",
+            path,
+            source,
+        })
     }
 }
 

@@ -21,7 +21,9 @@ pub enum SumError {
         nearest: Option<String>,
     },
     /// A support without neighbours.
-    #[error("R/Δ = {support_over_dx} leaves particle i without neighbours on lattice '{lattice}': the nearest is at {nearest} Δ")]
+    #[error(
+        "R/Δ = {support_over_dx} leaves particle i without neighbours on lattice '{lattice}': the nearest is at {nearest} Δ"
+    )]
     NoNeighbours {
         /// R/Δ.
         support_over_dx: f64,
@@ -37,7 +39,9 @@ pub enum SumError {
         support_over_dx: String,
     },
     /// The sum would not fit in memory.
-    #[error("R/Δ = {support_over_dx} on lattice '{lattice}' needs about {needed_mib} MiB for {sites:.3e} sites, more than the {allowed_mib} MiB allowed: lower R/Δ or raise memory_mib under [limits]")]
+    #[error(
+        "R/Δ = {support_over_dx} on lattice '{lattice}' needs about {needed_mib} MiB for {sites:.3e} sites, more than the {allowed_mib} MiB allowed: lower R/Δ or raise memory_mib under [limits]"
+    )]
     Memory {
         /// R/Δ.
         support_over_dx: f64,

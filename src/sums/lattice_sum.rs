@@ -164,7 +164,9 @@ impl LatticeSums {
                     continue;
                 }
                 let square = int(*level as i64) * unit / (&h * &h);
-                let Some(piece) = pieces.iter().find(|piece| square < &piece.to * &piece.to) else { continue };
+                let Some(piece) = pieces.iter().find(|piece| square < &piece.to * &piece.to) else {
+                    continue;
+                };
                 let (even, odd) = even_and_odd(piece, &square);
                 let sum = &weight * Rational::from_integer(sums[index].into());
                 rational += &even * &sum;
@@ -180,7 +182,11 @@ impl LatticeSums {
             let root = Radical::sqrt_of(&Rational::from_integer(free.into())).unwrap_or_default();
             &sum + &root.scale(&weight)
         });
-        let root = component.terms.first().map(|term| monomial_root(&self.lattice, &term.monomial)).unwrap_or_default();
+        let root = component
+            .terms
+            .first()
+            .map(|term| monomial_root(&self.lattice, &term.monomial))
+            .unwrap_or_default();
         &(&sum * &root) * &self.kernel.normalisation(self.lattice.dimension())
     }
 }
@@ -223,7 +229,8 @@ impl<'a> RadialTable<'a> {
             let mut values = Vec::with_capacity(levels.len());
             let mut current = 0;
             for ((level, _), root) in levels.iter().zip(&roots) {
-                while current + 1 < pieces.len() && BigInt::from(*level) >= pieces[current].first_level_beyond {
+                while current + 1 < pieces.len() && BigInt::from(*level) >= pieces[current].first_level_beyond
+                {
                     current += 1;
                 }
                 values.push(if *level == 0 {
@@ -256,7 +263,8 @@ impl<'a> RadialTable<'a> {
             let sum = Enclosure::from_parts(mid, rad, -i64::from(self.bits));
             &total + &(&sum * &Enclosure::exact(&weight, guard)).round(guard + 64)
         });
-        let root = component.terms.first().map(|term| monomial_root(lattice, &term.monomial)).unwrap_or_default();
+        let root =
+            component.terms.first().map(|term| monomial_root(lattice, &term.monomial)).unwrap_or_default();
         let sigma = self.sums.kernel.normalisation(dimension);
         (&total * &(&root * &sigma).enclose(guard)).round(guard + 64)
     }
@@ -315,7 +323,9 @@ impl FixedPolynomial {
     /// Σ c t^j from pairs (j, c), with t = x/B and x = level · A for `step` = A/B.
     fn new(terms: Vec<(i64, Rational)>, step: &Rational) -> Self {
         let terms: Vec<(i64, Rational)> = terms.into_iter().filter(|(_, c)| !c.is_zero()).collect();
-        let (Some(lowest), Some(highest)) = (terms.iter().map(|t| t.0).min(), terms.iter().map(|t| t.0).max()) else {
+        let (Some(lowest), Some(highest)) =
+            (terms.iter().map(|t| t.0).min(), terms.iter().map(|t| t.0).max())
+        else {
             return Self { coefficients: Vec::new(), denominator: BigInt::one(), shift: 0 };
         };
         let b = step.denom();
@@ -358,7 +368,8 @@ fn even_and_odd(piece: &RadialPiece, square: &Rational) -> (Rational, Rational) 
         let exponent = e as i64 - piece.denominator_power as i64;
         let parity = exponent.rem_euclid(2);
         let half = (exponent - parity) / 2;
-        let raised = if half >= 0 { power(square, half as u32) } else { power(square, (-half) as u32).recip() };
+        let raised =
+            if half >= 0 { power(square, half as u32) } else { power(square, (-half) as u32).recip() };
         *(if parity == 0 { &mut even } else { &mut odd }) += coefficient * raised;
     }
     (even, odd)

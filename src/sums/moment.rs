@@ -144,7 +144,8 @@ impl Moment {
     /// ∂_a W = r_a G_1 and ∂_a∂_b W = δ_ab G_1 + r_a r_b G_2.
     pub fn components(self, dimension: usize) -> Vec<Component> {
         let sign = if self.negated { -1 } else { 1 };
-        let term = |coefficient, monomial, radial| SummandTerm { coefficient: sign * coefficient, monomial, radial };
+        let term =
+            |coefficient, monomial, radial| SummandTerm { coefficient: sign * coefficient, monomial, radial };
         let positions = indices(dimension, self.p);
         let derivatives =
             if self.contracted { vec![MultiIndex::default()] } else { indices(dimension, self.q) };

@@ -1,7 +1,8 @@
 //! Moment sums over given neighbours in floating point: what the measured column rests on.
 //!
 //! Positions are in units of R, x = r_ij / R. All components asked for are taken in one pass, with one evaluation of the
-//! kernel for each pair, in eight lanes: pair n goes to lane n mod 8, and the lanes are added in one fixed order. No
+//! kernel for each pair. What is summed are the distinct products r^μ G_k, which many components share; the components
+//! are put together from them at the end. Eight lanes: pair n goes to lane n mod 8, and the lanes are added in one fixed order. No
 //! fused operations, so the same pairs in the same order give the same bits on every machine.
 
 use super::moment::Moment;
@@ -21,16 +22,20 @@ pub struct PairSums<T> {
     /// The components of each moment in `terms`.
     ranges: Vec<Range<usize>>,
     multiplicities: Vec<T>,
-    /// By component: (coefficient, index into the monomials, radial function).
-    terms: Vec<Vec<(T, usize, usize)>>,
+    /// By component: (coefficient, index into the products).
+    terms: Vec<Vec<(T, usize)>>,
+    /// The distinct products r^μ G_k: (index into the monomials, radial function).
+    products: Vec<(usize, usize)>,
     /// Each monomial as an earlier one times an axis, the constant first.
     steps: Vec<(usize, usize)>,
 }
 
-/// Sums being taken: eight lanes per component.
+/// Sums being taken: eight lanes per product.
 #[derive(Debug, Clone)]
 pub struct Accumulator<T> {
     lanes: Vec<[T; LANES]>,
+    /// Scratch: each monomial of the pairs in the block.
+    monomials: Vec<[T; LANES]>,
     block: Block<T>,
     filled: usize,
     pairs: u64,
@@ -55,20 +60,24 @@ impl<T: Float> PairSums<T> {
         let mut steps = vec![(0, 0)];
         let mut ranges = Vec::new();
         let (mut terms, mut multiplicities) = (Vec::new(), Vec::new());
-        let mut order = 0;
+        let mut products: Vec<(usize, usize)> = Vec::new();
         for moment in moments {
             let start = terms.len();
             for component in moment.components(dimension) {
                 multiplicities.push(number(component.multiplicity as f64));
                 let summand = component.terms.iter().map(|term| {
-                    order = order.max(term.radial);
-                    let place = place_of(&term.monomial, &mut monomials, &mut steps);
-                    (number(term.coefficient as f64), place, term.radial)
+                    let product = (place_of(&term.monomial, &mut monomials, &mut steps), term.radial);
+                    let place = products.iter().position(|known| *known == product).unwrap_or_else(|| {
+                        products.push(product);
+                        products.len() - 1
+                    });
+                    (number(term.coefficient as f64), place)
                 });
                 terms.push(summand.collect());
             }
             ranges.push(start..terms.len());
         }
+        let order = products.iter().map(|(_, radial)| *radial).max().unwrap_or(0);
         Self {
             dimension,
             evaluator: Evaluator::new(kernel, dimension, order),
@@ -76,6 +85,7 @@ impl<T: Float> PairSums<T> {
             ranges,
             multiplicities,
             terms,
+            products,
             steps,
         }
     }
@@ -102,14 +112,20 @@ impl<T: Float> PairSums<T> {
 
     /// An empty sum.
     pub fn start(&self) -> Accumulator<T> {
-        Accumulator { lanes: vec![[T::zero(); LANES]; self.terms.len()], block: Block::empty(), filled: 0, pairs: 0 }
+        Accumulator {
+            lanes: vec![[T::zero(); LANES]; self.products.len()],
+            monomials: vec![[T::one(); LANES]; self.steps.len()],
+            block: Block::empty(),
+            filled: 0,
+            pairs: 0,
+        }
     }
 
     /// Adds the pair at x = r_ij / R with weight ω_j / R^D. Pairs beyond the support add nothing.
     pub fn add(&self, sums: &mut Accumulator<T>, x: [T; 3], weight: T) {
         let lane = sums.filled;
-        for a in 0..3 {
-            sums.block.x[a][lane] = x[a];
+        for (lanes, x) in sums.block.x.iter_mut().zip(x) {
+            lanes[lane] = x;
         }
         sums.block.weight[lane] = weight;
         sums.filled += 1;
@@ -125,7 +141,13 @@ impl<T: Float> PairSums<T> {
         if sums.filled > 0 {
             self.flush(&mut sums);
         }
-        (sums.lanes.iter().map(tree_sum).collect(), sums.pairs)
+        let products: Vec<T> = sums.lanes.iter().map(tree_sum).collect();
+        let component = |terms: &Vec<(T, usize)>| {
+            terms
+                .iter()
+                .fold(T::zero(), |sum, (coefficient, product)| sum + *coefficient * products[*product])
+        };
+        (self.terms.iter().map(component).collect(), sums.pairs)
     }
 
     /// The Frobenius norm of one moment's components, each counted as often as it stands in the full tensor.
@@ -144,21 +166,20 @@ impl<T: Float> PairSums<T> {
         }
         let mut g = self.evaluator.evaluate(&radius).g;
         for function in &mut g {
-            for lane in 0..LANES {
-                function[lane] = function[lane] * block.weight[lane];
+            for (value, weight) in function.iter_mut().zip(&block.weight) {
+                *value = *value * *weight;
             }
         }
-        let mut monomials = [[T::one(); LANES]; MAX_MONOMIALS];
         for (index, (earlier, axis)) in self.steps.iter().enumerate().skip(1) {
+            let (before, rest) = sums.monomials.split_at_mut(index);
             for lane in 0..LANES {
-                monomials[index][lane] = monomials[*earlier][lane] * block.x[*axis][lane];
+                rest[0][lane] = before[*earlier][lane] * block.x[*axis][lane];
             }
         }
-        for (sum, terms) in sums.lanes.iter_mut().zip(&self.terms) {
-            for (coefficient, monomial, radial) in terms {
-                for lane in 0..LANES {
-                    sum[lane] = sum[lane] + *coefficient * (monomials[*monomial][lane] * g[*radial][lane]);
-                }
+        for (sum, (monomial, radial)) in sums.lanes.iter_mut().zip(&self.products) {
+            let (monomial, radial) = (&sums.monomials[*monomial], &g[*radial]);
+            for lane in 0..LANES {
+                sum[lane] = sum[lane] + monomial[lane] * radial[lane];
             }
         }
         sums.block = Block::empty();
@@ -166,11 +187,12 @@ impl<T: Float> PairSums<T> {
     }
 }
 
-/// All monomials in three variables up to order 8.
-const MAX_MONOMIALS: usize = 165;
-
 /// The index of a monomial, entered with its predecessors if it is not there yet.
-fn place_of(monomial: &MultiIndex, monomials: &mut Vec<MultiIndex>, steps: &mut Vec<(usize, usize)>) -> usize {
+fn place_of(
+    monomial: &MultiIndex,
+    monomials: &mut Vec<MultiIndex>,
+    steps: &mut Vec<(usize, usize)>,
+) -> usize {
     if let Some(place) = monomials.iter().position(|known| known == monomial) {
         return place;
     }

@@ -44,7 +44,8 @@ impl Reduction {
                     let weight = int(term.coefficient) * axis_weight(lattice, &term.monomial);
                     by_radial[term.radial] = &by_radial[term.radial] + &mean.scale(&weight);
                 }
-                let root = component.terms.first().map(|term| odd_axes(lattice, &term.monomial)).unwrap_or(int(1));
+                let root =
+                    component.terms.first().map(|term| odd_axes(lattice, &term.monomial)).unwrap_or(int(1));
                 (root, by_radial)
             })
             .collect();
@@ -54,7 +55,11 @@ impl Reduction {
                 (0..index).find(|other| {
                     standing[*other] == Standing::Free
                         && invariants[*other].0 == *root
-                        && invariants[*other].1.iter().zip(polynomials).all(|(a, b)| *a == b.scale(&int(sign)))
+                        && invariants[*other]
+                            .1
+                            .iter()
+                            .zip(polynomials)
+                            .all(|(a, b)| *a == b.scale(&int(sign)))
                 })
             };
             let this = if polynomials.iter().all(Multivariate::is_zero) {
@@ -110,5 +115,7 @@ fn odd_axes(lattice: &Lattice, monomial: &MultiIndex) -> Rational {
 }
 
 fn axis_product(lattice: &Lattice, times: impl Fn(usize) -> u8) -> Rational {
-    (0..3).fold(int(1), |product, a| (0..times(a)).fold(product, |product, _| product * &lattice.axis_squares()[a]))
+    (0..3).fold(int(1), |product, a| {
+        (0..times(a)).fold(product, |product, _| product * &lattice.axis_squares()[a])
+    })
 }

@@ -28,7 +28,9 @@ impl Shells {
         let denominator = squares.iter().fold(num_bigint::BigInt::from(1), |lcm, s| lcm.lcm(s.denom()));
         let numerators: Vec<i64> = squares
             .iter()
-            .map(|s| (s * Rational::from_integer(denominator.clone())).to_integer().to_i64().unwrap_or(i64::MAX))
+            .map(|s| {
+                (s * Rational::from_integer(denominator.clone())).to_integer().to_i64().unwrap_or(i64::MAX)
+            })
             .collect();
         let common = numerators.iter().fold(0_i64, |gcd, n| gcd.gcd(n));
         let weights: Vec<i64> = numerators.iter().map(|n| n / common).collect();
@@ -58,7 +60,9 @@ impl Shells {
         let moments = monomials
             .iter()
             .enumerate()
-            .map(|(index, monomial)| (*monomial, order.iter().map(|shell| sums[shell * width + index]).collect()))
+            .map(|(index, monomial)| {
+                (*monomial, order.iter().map(|shell| sums[shell * width + index]).collect())
+            })
             .collect();
         Self { radius, unit, levels, moments }
     }

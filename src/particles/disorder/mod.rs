@@ -95,20 +95,21 @@ impl Disorder {
         };
         let known = catalogue();
         let ids: Vec<&str> = known.iter().map(|entry| entry.id).collect();
-        let entry = known.iter().find(|entry| entry.id == model).ok_or_else(|| ParticleError::UnknownDisorder {
-            id: model.to_owned(),
-            nearest: nearest(model, &ids),
-            known: ids.join(", "),
-        })?;
+        let entry =
+            known.iter().find(|entry| entry.id == model).ok_or_else(|| ParticleError::UnknownDisorder {
+                id: model.to_owned(),
+                nearest: nearest(model, &ids),
+                known: ids.join(", "),
+            })?;
         let mut parts = rest.unwrap_or_default().split(',').map(str::trim);
         let first = parts.next().unwrap_or_default();
         let amplitude = match (entry.moves, first) {
             (Moves::Nothing, "") => 0.0,
             (Moves::Nothing, _) => return Err(fault("takes no amplitude".into())),
             (_, "") => return Err(fault("has no amplitude".into())),
-            (_, number) => {
-                number.parse::<f64>().map_err(|_| fault(format!("has an amplitude '{number}' that is no number")))?
-            }
+            (_, number) => number
+                .parse::<f64>()
+                .map_err(|_| fault(format!("has an amplitude '{number}' that is no number")))?,
         };
         if !amplitude.is_finite() || amplitude < 0.0 || (amplitude == 0.0 && entry.moves != Moves::Nothing) {
             return Err(fault(format!("has an amplitude {amplitude}, which must be finite and positive")));
@@ -116,7 +117,12 @@ impl Disorder {
         if let Some(option) = parts.next() {
             return Err(fault(format!("has an option '{option}' that model '{model}' does not know")));
         }
-        Ok(Self { model: model.to_owned(), amplitude, options: BTreeMap::new(), text: text.trim().to_owned() })
+        Ok(Self {
+            model: model.to_owned(),
+            amplitude,
+            options: BTreeMap::new(),
+            text: text.trim().to_owned(),
+        })
     }
 
     /// The id of the model.
