@@ -28,7 +28,7 @@ pub fn roll_up(cases: &[CaseVerdict]) -> Judgement {
     let verdicts = decided.iter().map(|case| case.verdict).unique().sorted().collect_vec();
     match verdicts.as_slice() {
         [] => Judgement { verdict: Verdict::Inconclusive, why: "no case was decided".into() },
-        [one] => Judgement { verdict: *one, why: format!("{one} in {}{caveat}", count(decided.len())) },
+        [one] => Judgement { verdict: *one, why: format!("in {}{caveat}", count(decided.len())) },
         several => {
             let axes = deciding_axes(&decided);
             let parts = several.iter().map(|verdict| {
@@ -42,17 +42,20 @@ pub fn roll_up(cases: &[CaseVerdict]) -> Judgement {
 }
 
 fn count(cases: usize) -> String {
-    if cases == 1 { "the one case".into() } else { format!("all {cases} decided cases") }
+    if cases == 1 { "the one decided case".into() } else { format!("all {cases} decided cases") }
 }
 
 fn label(case: &CaseVerdict, axes: &[usize]) -> String {
     axes.iter().map(|axis| case.labels[*axis].as_str()).join(" ")
 }
 
+/// The labels that tell all cases apart, without those that follow from earlier ones.
 fn varying(cases: &[CaseVerdict]) -> Vec<usize> {
-    let axes =
-        (0..5).filter(|axis| cases.iter().map(|case| &case.labels[*axis]).unique().count() > 1).collect_vec();
-    if axes.is_empty() { vec![0] } else { axes }
+    let told_apart = |axes: &[usize]| cases.iter().map(|case| label(case, axes)).unique().count();
+    (1..5).fold(vec![0], |axes, axis| {
+        let more = [axes.as_slice(), &[axis]].concat();
+        if told_apart(&more) > told_apart(&axes) { more } else { axes }
+    })
 }
 
 /// The smallest set of labels, earlier ones first, of which the verdict is a function.

@@ -201,7 +201,7 @@ impl PowerLaw {
 ///
 /// Points that are zero or no higher than their floor go first. Then the quadratic `ln y = c₀ + c₁ u + c₂ u²`, with `u` the centred
 /// `ln x`, is fitted with the weights of [`power_law`]. If the slope's change across the window, `|2 c₂| · range(u)`, exceeds
-/// `max_bend` and `c₂` differs from zero at the two-sided 95 % level, the coarsest abscissa is dropped, and so on. The order of
+/// `max_bend` and `c₂` differs from zero at the two-sided 95 % level (by residuals and by sampling errors alike), the coarsest abscissa is dropped, and so on. The order of
 /// the points does not matter; several points may share an abscissa, and leave together.
 ///
 /// # Errors
@@ -401,6 +401,8 @@ fn log_weights(points: &[LadderPoint], indices: &[usize]) -> Option<Vec<f64>> {
 struct Parabola {
     centre: f64,
     fit: LinearFit,
+    /// Standard error of `c₂` from the relative errors of the points; 0 where these are not known.
+    a_priori: f64,
 }
 
 impl Parabola {
@@ -409,13 +411,17 @@ impl Parabola {
         let ln_y: Vec<f64> = indices.iter().map(|&i| libm::log(points[i].y)).collect();
         let centre = ln_x.iter().sum::<f64>() / ln_x.len() as f64;
         let u: Vec<f64> = ln_x.iter().map(|v| v - centre).collect();
-        let fit = weighted_polynomial(&u, &ln_y, log_weights(points, indices).as_deref(), 2)?;
-        Ok(Parabola { centre, fit })
+        let weights = log_weights(points, indices);
+        let fit = weighted_polynomial(&u, &ln_y, weights.as_deref(), 2)?;
+        let a_priori = if weights.is_some() { fit.cofactor[2][2].sqrt() } else { 0.0 };
+        Ok(Parabola { centre, fit, a_priori })
     }
 
-    /// Whether `c₂` differs from zero at the two-sided 95 % level.
+    /// Whether `c₂` differs from zero at the two-sided 95 % level, by the residuals and by the sampling errors: rungs that
+    /// share their random numbers scatter together, and their residuals alone would call that a bend.
     fn is_bent(&self) -> Result<bool, FitError> {
-        Ok(!self.fit.interval(2, 0.95)?.contains(0.0))
+        let by_sampling = self.fit.coefficients[2].abs() > 1.96 * self.a_priori;
+        Ok(by_sampling && !self.fit.interval(2, 0.95)?.contains(0.0))
     }
 
     /// Intercept at `ln x = 0` and slope of the tangent at `ln_x`.

@@ -119,7 +119,7 @@ impl Plan {
         let free: usize =
             moments.iter().map(|moment| Reduction::of(*moment, lattice, group).free().len()).sum();
         let mut rungs = Vec::new();
-        for supports in scene.regular_ladder(lattice.dimension()) {
+        for supports in scene.regular_ladder(lattice.dimension(), kernel) {
             self.exact_sums += (free * supports.len()) as u64;
             rungs.push(vec![self.tasks.len()]);
             self.tasks.push(Task::Regular(RegularSpec {
@@ -160,7 +160,7 @@ impl Plan {
             self.tasks.push(Task::Samples { spec, support: support.clone() });
             self.tasks.len() - 1
         };
-        let ladder = scene.disorder_ladder(dimension, disorder.entry().moves);
+        let ladder = scene.disorder_ladder(dimension, kernel, disorder.entry().moves);
         let finest = ladder.iter().flatten().map(rational_to_f64).fold(0.0, f64::max);
         // d̃ and h are held: the amplitude, in Δ, falls with Δ/h towards the coarse end.
         let rungs = ladder.iter().map(|rung| {

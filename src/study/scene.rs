@@ -6,6 +6,7 @@ use crate::exact::{Rational, int, ratio, rational_from_decimal};
 use crate::kernel::{self, Kernel};
 use crate::particles::{Disorder, Lattice, Moves, VolumeRule, lattice_by_id};
 use crate::sums::{Moment, nearest_distance};
+use num_traits::ToPrimitive;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -145,8 +146,7 @@ pub struct DxLadder {
     pub to: u32,
     /// How many rungs.
     pub rungs: u32,
-    /// Over how many offsets k/offsets of R/Δ the envelope is taken (sums over displaced lattices of independent particles
-    /// do not oscillate and take the half-integer alone).
+    /// Offsets of R/Δ per spacing over which the envelope is taken; they span one spacing of h/Δ.
     pub offsets: u32,
 }
 
@@ -341,21 +341,21 @@ impl Scene {
     }
 
     /// The ladder in Δ/h on regular particles: by rung, R/Δ and its offsets.
-    pub fn regular_ladder(&self, dimension: usize) -> Vec<Vec<Rational>> {
+    pub fn regular_ladder(&self, dimension: usize, kernel: &Kernel) -> Vec<Vec<Rational>> {
         let default = [(8, 512, 13, 16), (8, 256, 15, 16), (6, 96, 13, 16)][dimension - 1];
         let ladder = dx_ladder(&self.raw.ladders.regular, dimension, default);
-        self.supports(&ladder, ladder.offsets)
+        self.supports(&ladder, kernel)
     }
 
-    /// The ladder in Δ/h under a disorder.
-    pub fn disorder_ladder(&self, dimension: usize, moves: Moves) -> Vec<Vec<Rational>> {
+    /// The ladder in Δ/h under a disorder. Sums over independent displacements do not oscillate with R/Δ and take the
+    /// half-integer alone.
+    pub fn disorder_ladder(&self, dimension: usize, kernel: &Kernel, moves: Moves) -> Vec<Vec<Rational>> {
         let default = [(4, 256, 11, 8), (4, 96, 12, 8), (3, 24, 11, 8)][dimension - 1];
         let ladder = dx_ladder(&self.raw.ladders.disorder, dimension, default);
+        let rungs = self.supports(&ladder, kernel);
         match moves {
-            Moves::All => {
-                self.supports(&ladder, 1).into_iter().map(|rung| vec![&rung[0] + ratio(1, 2)]).collect()
-            }
-            _ => self.supports(&ladder, ladder.offsets),
+            Moves::All => rungs.into_iter().map(|rung| vec![&rung[0] + ratio(1, 2)]).collect(),
+            _ => rungs,
         }
     }
 
@@ -374,13 +374,15 @@ impl Scene {
     pub fn sampling(&self) -> (u64, f64) {
         let samples = &self.raw.samples;
         if self.quick {
-            (samples.most_blocks.min(2), samples.precision.max(0.1))
+            (samples.most_blocks.min(8), samples.precision.max(0.05))
         } else {
             (samples.most_blocks, samples.precision)
         }
     }
 
-    fn supports(&self, ladder: &DxLadder, offsets: u32) -> Vec<Vec<Rational>> {
+    /// Whole R/Δ in geometric steps, each with offsets over one spacing of h/Δ: the knots of a kernel lie at multiples of
+    /// h, so that is how long it takes all of them to pass a particle.
+    fn supports(&self, ladder: &DxLadder, kernel: &Kernel) -> Vec<Vec<Rational>> {
         // A first look stops at a third of the reach, but keeps the two octaves that a fit needs.
         let to = if self.quick { (ladder.to / 3).max(4 * ladder.from).min(ladder.to) } else { ladder.to };
         let steps = ladder.rungs.max(2) - 1;
@@ -392,8 +394,10 @@ impl Scene {
             })
             .collect();
         rungs.dedup();
-        let offsets = i64::from(offsets.max(1));
-        rungs.iter().map(|rung| (0..offsets).map(|k| int(*rung) + ratio(k, offsets)).collect()).collect()
+        let per_spacing = i64::from(ladder.offsets.max(1));
+        let span = kernel.support_over_h();
+        let count = (span * int(per_spacing)).ceil().to_integer().to_i64().unwrap_or(per_spacing);
+        rungs.iter().map(|rung| (0..count).map(|k| int(*rung) + ratio(k, count) * span).collect()).collect()
     }
 }
 
