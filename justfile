@@ -18,6 +18,13 @@ doc:
 bench:
     cargo bench
 
+# The certified 50-digit lattice sum, and the same by python-flint and mpmath beside it.
+bench-sums:
+    cargo bench --bench sums
+    python3 -m venv target/peers
+    target/peers/bin/pip install --quiet --requirement benches/peers/requirements.txt
+    target/peers/bin/python benches/peers/lattice_sum.py
+
 # Regenerate the committed reports in place; with NAMES, only these, and new ones too.
 reports *NAMES:
     bash .ci/reports write {{ NAMES }}

@@ -23,6 +23,8 @@ pub(super) enum Command {
     Merge(MergeArguments),
     /// Say what a scene would compute, and what it leaves out
     Plan(PlanArguments),
+    /// Certified moment sums over a lattice, to any number of digits or in closed form
+    Sums(SumsArguments),
     /// Print the JSON Schema of scenes or reports
     Schema(SchemaArguments),
     /// List what can be named in a scene
@@ -98,6 +100,37 @@ pub(super) struct PlanArguments {
     /// As for a first look
     #[arg(long)]
     pub(super) quick: bool,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SumsArguments {
+    /// Id of the kernel
+    #[arg(long)]
+    pub(super) kernel: String,
+    /// Id of the lattice
+    #[arg(long)]
+    pub(super) lattice: String,
+    /// R/Δ, a decimal or p/q, read exactly
+    #[arg(long, allow_hyphen_values = true)]
+    pub(super) support_over_dx: String,
+    /// Decimals, absolute, lengths in units of Δ
+    #[arg(long, default_value_t = 15)]
+    pub(super) digits: u32,
+    /// Print the closed form as well: rational × √n × π^k, or a quotient of such
+    #[arg(long)]
+    pub(super) exact: bool,
+    /// A moment sum; may be given several times [default: the seven of Fatehi & Manzari and Σ ωW]
+    #[arg(long = "moment", value_name = "NAME")]
+    pub(super) moments: Vec<String>,
+    /// Volumes: constant or number-density
+    #[arg(long, default_value = "constant")]
+    pub(super) volume_rule: String,
+    /// Memory that the sites may take
+    #[arg(long, default_value_t = 2048)]
+    pub(super) memory_mib: u64,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,

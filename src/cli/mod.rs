@@ -6,6 +6,7 @@ mod diagnostic;
 mod execute;
 mod exit;
 mod progress;
+mod sums;
 mod terminal;
 
 pub use arguments::Arguments;
@@ -29,6 +30,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Run(run) => execute::run(run, false),
         Command::Merge(merge) => execute::run(&merge.as_run(), true),
         Command::Plan(plan) => execute::plan(plan),
+        Command::Sums(arguments) => sums::sums(arguments),
         Command::Schema(schema) => catalogue::schema(schema.of),
         Command::List(list) => catalogue::list(list),
     };

@@ -171,9 +171,11 @@ impl Coefficient {
         if let Some(reciprocal) = denominator.single_term_reciprocal() {
             return Self::from(numerator * &reciprocal);
         }
-        // Only the sign and size of the denominator's first term are free; make its coefficient 1.
-        let unit = denominator.terms().next().map_or_else(Rational::one, |(_, _, c)| c.recip());
-        let (numerator, denominator) = (numerator.scale(&unit), denominator.scale(&unit));
+        // The coefficient and the power of π of the denominator's first term are free: make them 1 and 0.
+        let (unit, power) =
+            denominator.terms().next().map_or_else(|| (Rational::one(), 0), |(k, _, c)| (c.recip(), -k));
+        let factor = Radical::pi_power(power).scale(&unit);
+        let (numerator, denominator) = (numerator * &factor, denominator * &factor);
         match single_term_ratio(&numerator, &denominator) {
             Some(ratio) => Self::from(ratio),
             None => Self::Quotient { numerator, denominator },

@@ -237,6 +237,11 @@ impl Enclosure {
         float_bounds::at_least(&self.rad.clone().into(), self.exp)
     }
 
+    /// Whether the radius is less than 2^-`bits`.
+    pub fn radius_is_below(&self, bits: u32) -> bool {
+        self.rad.is_zero() || self.exp + (self.rad.bits() as i64) <= -i64::from(bits)
+    }
+
     /// A lower bound of `log₂(|midpoint| / radius)`, less than 2 too low; `None` if zero is one
     /// of several numbers enclosed, `i64::MAX` if the radius is zero.
     pub fn relative_accuracy_bits(&self) -> Option<i64> {

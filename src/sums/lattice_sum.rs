@@ -8,6 +8,7 @@
 //! Lengths are in units of Δ. Particle i itself is included.
 
 use super::moment::Component;
+use super::roots::Roots;
 use super::shells::{Shells, split_square};
 use super::{Moment, SumError};
 use crate::exact::{Coefficient, Enclosure, MultiIndex, Radical, Rational, int, rational_to_f64};
@@ -208,13 +209,8 @@ impl<'a> RadialTable<'a> {
         let unit = sums.shells.unit();
         let (outside, inside) = split_square_of(unit);
         let needed = |k: usize| components.iter().flat_map(|c| &c.terms).any(|term| term.radial == k);
-        let roots: Vec<BigInt> = levels
-            .iter()
-            .map(|(level, _)| {
-                let scaled = BigUint::from(u128::from(*level) * u128::from(inside)) << (2 * bits);
-                BigInt::from(scaled.sqrt())
-            })
-            .collect();
+        let mut known = Roots::new(bits);
+        let roots: Vec<BigInt> = levels.iter().map(|(level, _)| known.of(level * inside)).collect();
         let step = unit / (&h * &h);
         let values = std::array::from_fn(|k| {
             if !needed(k) {
@@ -312,9 +308,10 @@ impl FixedPiece {
         if odd.is_zero() && self.odd.coefficients.is_empty() {
             return (even, 1);
         }
-        // odd and root are each off by less than one unit: |Δ(odd·root)| < |odd| + |root| + 1, and one for the shift.
+        // even and odd are off by less than one unit, root by less than two: |Δ(odd·root)| < 2|odd| + |root| + 2, and
+        // one for the shift.
         let whole = |v: &BigInt| (v.abs() >> bits).to_u64().unwrap_or(u64::MAX / 8) + 1;
-        let error = whole(&odd) + whole(root) + 4;
+        let error = 2 * whole(&odd) + whole(root) + 4;
         ((even + ((odd * root) >> bits)), error)
     }
 }

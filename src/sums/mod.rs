@@ -7,6 +7,7 @@ mod lattice_sum;
 mod moment;
 mod pair_sum;
 mod reduction;
+mod roots;
 mod shells;
 
 pub use error::SumError;
