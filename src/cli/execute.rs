@@ -17,7 +17,7 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
     let scene = Scene::read(&arguments.scene, arguments.quick)?;
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(&scene.name));
     check_target(&out)?;
-    let plan = Plan::of(&scene);
+    let plan = Plan::within_budget(&scene)?;
     let threads = arguments.threads.unwrap_or(0);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)

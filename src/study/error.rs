@@ -13,6 +13,16 @@ pub enum StudyError {
     /// The scene is wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// The plan is beyond the budget that the scene declares.
+    #[error(
+        "the plan needs about {needed:.3e} pairs, more than the {allowed:.3e} of limits.most_pairs: shorten the ladders, lower the samples, or raise the budget"
+    )]
+    Budget {
+        /// Estimated pairs.
+        needed: u64,
+        /// `limits.most_pairs`.
+        allowed: u64,
+    },
     /// A lattice sum could not be taken.
     #[error("{task}: {source}")]
     Sum {

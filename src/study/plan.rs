@@ -3,6 +3,7 @@
 //! Tasks are grouped by kernel, lattice and volume rule, and take only the moments that some claim asks for, only the
 //! components that symmetry leaves, and only the ladders that some quantity needs.
 
+use super::StudyError;
 use super::outcome::{CaseId, Varies};
 use super::scene::Scene;
 use crate::claim::{Claim, Quantity, Statement};
@@ -71,6 +72,20 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Plans a scene within the budget it declares.
+    ///
+    /// # Errors
+    /// [`StudyError::Budget`] if the estimate is above `limits.most_pairs`.
+    pub fn within_budget(scene: &Scene) -> Result<Self, StudyError> {
+        let plan = Self::of(scene);
+        match scene.raw.limits.most_pairs {
+            Some(allowed) if plan.most_pairs > allowed => {
+                Err(StudyError::Budget { needed: plan.most_pairs, allowed })
+            }
+            _ => Ok(plan),
+        }
+    }
+
     /// Plans a scene.
     pub fn of(scene: &Scene) -> Self {
         let mut plan = Self {

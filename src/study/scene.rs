@@ -202,11 +202,14 @@ pub struct LimitsTable {
     pub allow_degenerate: bool,
     /// Memory that one task may take.
     pub memory_mib: u64,
+    /// The pairs that the study may take, as `remainder plan` estimates them; none is no limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub most_pairs: Option<u64>,
 }
 
 impl Default for LimitsTable {
     fn default() -> Self {
-        Self { allow_degenerate: false, memory_mib: 2048 }
+        Self { allow_degenerate: false, memory_mib: 2048, most_pairs: None }
     }
 }
 
