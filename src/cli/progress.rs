@@ -44,19 +44,19 @@ impl Progress {
                 self.bar.set_length(cost.max(1));
             }
             Event::Advanced { cost, stored } => {
-                state.done += cost;
+                state.done = state.done.saturating_add(cost);
                 state.stored += u64::from(stored);
                 self.bar.inc(cost);
             }
             Event::Finished { label, seconds, spared } => {
-                state.done += spared;
+                state.done = state.done.saturating_add(spared);
                 state.finished += 1;
                 self.bar.inc(spared);
                 self.bar.set_message(format!("{}/{} {label}", state.finished, state.tasks));
                 *state.seconds.entry(label).or_default() += seconds;
             }
         }
-        let tenths = (state.done * 10).checked_div(state.cost).unwrap_or(10);
+        let tenths = state.done.saturating_mul(10).checked_div(state.cost).unwrap_or(10);
         if !self.interactive && tenths > state.tenths {
             state.tenths = tenths;
             eprintln!("{} of {} tasks, {} % of the work", state.finished, state.tasks, tenths * 10);

@@ -113,7 +113,7 @@ impl Plan {
             if let Task::Samples { .. } = task {
                 plan.most_samples += blocks * scene.raw.samples.block;
             }
-            plan.most_pairs += task.cost(scene);
+            plan.most_pairs = plan.most_pairs.saturating_add(task.cost(scene));
         }
         plan.omissions = omissions(scene, &groups);
         plan
@@ -222,11 +222,13 @@ impl Task {
     pub fn cost(&self, scene: &Scene) -> u64 {
         match self {
             Self::Regular(spec) => {
-                spec.supports.iter().map(|s| spec.lattice.estimate_within(rational_to_f64(s)) as u64).sum()
+                let sites =
+                    spec.supports.iter().map(|s| spec.lattice.estimate_within(rational_to_f64(s)) as u64);
+                sites.fold(0, u64::saturating_add)
             }
             Self::Samples { spec, .. } => {
                 let (blocks, _) = scene.sampling();
-                blocks * scene.raw.samples.block * sample_pairs(spec)
+                (blocks * scene.raw.samples.block).saturating_mul(sample_pairs(spec))
             }
         }
     }
@@ -292,7 +294,7 @@ pub(super) fn sample_pairs(spec: &SampleSpec) -> u64 {
         VolumeRule::Constant => inside,
         VolumeRule::NumberDensity => inside * (inside + 1.0),
     };
-    pairs as u64 + 1
+    (pairs as u64).saturating_add(1)
 }
 
 /// The claims that are made for a dimension.

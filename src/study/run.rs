@@ -54,7 +54,7 @@ pub fn run(scene: &Scene, plan: &Plan, options: &RunOptions<'_>) -> Result<Optio
     let mut order: Vec<usize> = (0..plan.tasks.len()).filter(|index| mine(*index)).collect();
     // The longest first, so that the end of the run keeps all threads busy.
     order.sort_by_key(|index| std::cmp::Reverse(plan.tasks[*index].cost(scene)));
-    let cost = order.iter().map(|index| plan.tasks[*index].cost(scene)).sum();
+    let cost = order.iter().map(|index| plan.tasks[*index].cost(scene)).fold(0, u64::saturating_add);
     (options.events)(Event::Planned { tasks: order.len(), cost });
     let results: Vec<(usize, Result<Option<TaskResult>, StudyError>)> = order
         .par_iter()
@@ -169,9 +169,9 @@ fn run_task(scene: &Scene, task: &Task, options: &RunOptions<'_>) -> Result<Opti
                     }
                 };
                 blocks.push(block);
-                advanced(size * sample_pairs(spec), was_stored);
+                advanced(size.saturating_mul(sample_pairs(spec)), was_stored);
             }
-            finished((most - blocks.len() as u64) * size * sample_pairs(spec));
+            finished(((most - blocks.len() as u64) * size).saturating_mul(sample_pairs(spec)));
             Ok(Some(TaskResult::Samples { blocks, floors: sampler.floors().to_vec() }))
         }
     }

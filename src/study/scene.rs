@@ -472,6 +472,16 @@ fn resolve_claims(
     Ok(claims)
 }
 
+/// The most rungs or offsets of a ladder: a slip of the keyboard must not exhaust memory.
+const MOST_STEPS: u32 = 1000;
+
+/// The most samples in a block, and the most blocks.
+const MOST_SAMPLES: u64 = 1 << 20;
+
+fn twice(ladder: &str, dimension: u8) -> String {
+    format!("there are two [[ladders.{ladder}]] for dimension {dimension}: keep one of them")
+}
+
 fn check_numbers(
     raw: &RawScene,
     lattices: &[Lattice],
@@ -490,12 +500,15 @@ fn check_numbers(
             if ladder.from == 0 {
                 return Err(at(place("from"), "R/Δ must be positive".into()));
             }
-            if ladder.to < 4 * ladder.from {
+            if list[..index].iter().any(|other| other.dimension == ladder.dimension) {
+                return Err(at(place("dimension"), twice(name, ladder.dimension)));
+            }
+            if ladder.to / 4 < ladder.from {
                 let message = format!(
                     "the window {} … {} spans less than two octaves, which decides no order: raise `to` to at least {}",
                     ladder.from,
                     ladder.to,
-                    4 * ladder.from
+                    4 * u64::from(ladder.from)
                 );
                 return Err(at(place("to"), message));
             }
@@ -507,6 +520,11 @@ fn check_numbers(
             }
             if ladder.offsets == 0 {
                 return Err(at(place("offsets"), "an envelope needs at least one offset".into()));
+            }
+            for (field, count) in [("rungs", ladder.rungs), ("offsets", ladder.offsets)] {
+                if count > MOST_STEPS {
+                    return Err(at(place(field), format!("{count} {field}: give at most {MOST_STEPS}")));
+                }
             }
             for lattice in
                 lattices.iter().filter(|lattice| lattice.dimension() == usize::from(ladder.dimension))
@@ -538,6 +556,9 @@ fn check_numbers(
         let place = |field: &str| format!("ladders.displacement.{index}.{field}");
         if !(1..=3).contains(&ladder.dimension) {
             return Err(at(place("dimension"), format!("dimension {} is not 1, 2 or 3", ladder.dimension)));
+        }
+        if raw.ladders.displacement[..index].iter().any(|other| other.dimension == ladder.dimension) {
+            return Err(at(place("dimension"), twice("displacement", ladder.dimension)));
         }
         let support = ladder.support_over_dx;
         if !support.is_finite() || support <= 0.0 {
@@ -576,6 +597,14 @@ fn check_numbers(
             "samples.block".into(),
             "sampling needs blocks of at least 2 samples, and at least one block".into(),
         ));
+    }
+    for (field, count) in [("block", samples.block), ("most_blocks", samples.most_blocks)] {
+        if count > MOST_SAMPLES {
+            return Err(at(
+                format!("samples.{field}"),
+                format!("{count} is too many: give at most {MOST_SAMPLES}"),
+            ));
+        }
     }
     if !(samples.precision.is_finite() && samples.precision > 0.0) {
         return Err(at(
