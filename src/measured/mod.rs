@@ -13,5 +13,6 @@ pub mod window;
 pub use error::{FitError, Input};
 pub use regular::{RegularNorm, RegularRung, RegularSpec, regular_rung};
 pub use sample::{
-    CLOSEST, MomentStatistics, SampleBlock, SampleError, SampleSpec, Sampler, Summary, is_precise, summarise,
+    CLOSEST, MomentStatistics, SampleBlock, SampleError, SampleSpec, Sampler, Summary, is_precise,
+    neighbourhood_radius, summarise,
 };

@@ -98,6 +98,15 @@ pub struct Sampler {
 /// lanes behaves like √(n/8) ε ≲ 112 ε, of which a random walk reaches a fraction.
 const FLOOR_FACTOR: f64 = 64.0;
 
+/// How far from i, in Δ, lattice sites are laid when no particle moves by more than `longest` Δ: neighbours of i after
+/// both moved; with number-density volumes the neighbours of these as well.
+pub fn neighbourhood_radius(rule: VolumeRule, support_over_dx: f64, longest: f64) -> f64 {
+    match rule {
+        VolumeRule::Constant => support_over_dx + 2.0 * longest,
+        VolumeRule::NumberDensity => 2.0 * support_over_dx + 4.0 * longest,
+    }
+}
+
 impl Sampler {
     /// Lays the neighbourhood and takes the regular sums.
     ///
@@ -107,12 +116,7 @@ impl Sampler {
         let dimension = spec.lattice.dimension();
         let entry = spec.disorder.entry();
         let longest = entry.longest[dimension - 1] * spec.amplitude;
-        // Neighbours of i after both moved; with number-density volumes the neighbours of these as well.
-        let reach = match spec.rule {
-            VolumeRule::Constant => spec.support_over_dx + 2.0 * longest,
-            VolumeRule::NumberDensity => 2.0 * spec.support_over_dx + 4.0 * longest,
-        };
-        let sites = spec.lattice.sites_within(reach);
+        let sites = spec.lattice.sites_within(neighbourhood_radius(spec.rule, spec.support_over_dx, longest));
         let sums = PairSums::new(&spec.kernel, dimension, &spec.moments);
         let density = PairSums::new(&spec.kernel, dimension, &[Moment::default()]);
         let volume = spec.lattice.particle_volume().enclose(96).midpoint_f64();

@@ -2,10 +2,12 @@
 
 use super::source::{SceneError, SceneText};
 use crate::claim::{self, Claim, Powers, Quantity, Statement, Verdict};
-use crate::exact::{Rational, int, ratio, rational_from_decimal};
+use crate::exact::{Rational, int, ratio, rational_from_decimal, rational_to_f64};
 use crate::kernel::{self, Kernel};
+use crate::measured::neighbourhood_radius;
 use crate::particles::{Disorder, Lattice, Moves, VolumeRule, lattice_by_id};
 use crate::sums::{Moment, nearest_distance};
+use itertools::Itertools as _;
 use num_traits::ToPrimitive;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -340,7 +342,38 @@ impl Scene {
             let _ = write!(hex, "{byte:02x}");
             hex
         });
-        Ok(Self { name: name.to_owned(), raw, sha256, quick, kernels, lattices, disorders, rules, claims })
+        let scene =
+            Self { name: name.to_owned(), raw, sha256, quick, kernels, lattices, disorders, rules, claims };
+        scene.check_neighbourhoods(text)?;
+        Ok(scene)
+    }
+
+    /// Disordered neighbourhoods, which reach further than R by what particles may move, must fit in memory.
+    fn check_neighbourhoods(&self, text: &SceneText) -> Result<(), SceneError> {
+        let allowed = self.raw.limits.memory_mib;
+        for (disorder, lattice) in self.disorders.iter().cartesian_product(&self.lattices) {
+            let (entry, dimension) = (disorder.entry(), lattice.dimension());
+            let longest = entry.longest[dimension - 1] * disorder.amplitude();
+            let ladders = self.kernels.iter().map(|kernel| self.disorder_ladder(dimension, kernel, entry.moves));
+            let mut supports = ladders.flatten().concat();
+            supports.push(self.displacement_ladder(dimension).0);
+            let support = supports.iter().map(rational_to_f64).fold(0.0, f64::max);
+            for rule in &self.rules {
+                let sites = lattice.estimate_within(neighbourhood_radius(*rule, support, longest));
+                let needed = sites * MIB_PER_SITE;
+                if needed > allowed as f64 {
+                    let written = self.raw.cases.disorders.iter();
+                    let index = written.take_while(|written| written.trim() != disorder.to_string()).count();
+                    let message = format!(
+                        "disorder '{disorder}' at R/Δ = {support} with {rule} volumes on lattice '{}' needs about \
+                         {needed:.0} MiB for {sites:.2e} sites, more than the {allowed} MiB of limits.memory_mib",
+                        lattice.id()
+                    );
+                    return Err(text.error_at(&format!("cases.disorders.{index}"), message, None));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The ladder in Δ/h on regular particles: by rung, R/Δ and its offsets.
@@ -472,6 +505,9 @@ fn resolve_claims(
     Ok(claims)
 }
 
+/// Memory per lattice site, for estimates before anything is laid.
+const MIB_PER_SITE: f64 = 400.0 / (1_u64 << 20) as f64;
+
 /// The most rungs or offsets of a ladder: a slip of the keyboard must not exhaust memory.
 const MOST_STEPS: u32 = 1000;
 
@@ -539,7 +575,7 @@ fn check_numbers(
                     return Err(at(place("from"), message));
                 }
                 let sites = lattice.estimate_within(f64::from(ladder.to) + 1.0);
-                let needed = sites * 400.0 / f64::from(1 << 20);
+                let needed = sites * MIB_PER_SITE;
                 if needed > raw.limits.memory_mib as f64 {
                     let message = format!(
                         "R/Δ = {} on lattice '{}' needs about {needed:.0} MiB for {sites:.2e} sites, more than the {} MiB of limits.memory_mib",
@@ -580,7 +616,7 @@ fn check_numbers(
                 );
                 return Err(at(place("support_over_dx"), message));
             }
-            let needed = lattice.estimate_within(support + 1.0) * 400.0 / f64::from(1 << 20);
+            let needed = lattice.estimate_within(support + 1.0) * MIB_PER_SITE;
             if needed > raw.limits.memory_mib as f64 {
                 let message = format!(
                     "R/Δ = {support} on lattice '{}' needs about {needed:.0} MiB, more than the {} MiB of limits.memory_mib",
