@@ -7,7 +7,7 @@ use super::outcome::Outcome;
 use super::plan::{Omission, Plan, Task, sample_pairs};
 use super::scene::Scene;
 use super::store::BlockStore;
-use crate::measured::{RegularRung, SampleBlock, Sampler, is_precise, regular_rung};
+use crate::measured::{RegularRung, RegularSpec, SampleBlock, Sampler, is_precise, regular_rung};
 use crate::particles::PointGroup;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -112,6 +112,14 @@ pub fn run(scene: &Scene, plan: &Plan, options: &RunOptions<'_>) -> Result<Optio
     Ok(Some(outcome))
 }
 
+fn is_rung_of(rung: &RegularRung, spec: &RegularSpec) -> bool {
+    let supports = spec.supports.len();
+    rung.supports.len() == supports
+        && rung.in_support.len() == supports
+        && rung.norms.len() == supports
+        && rung.norms.iter().all(|norms| norms.len() == spec.moments.len())
+}
+
 /// All blocks of a task; `None` if some are missing and nothing may be computed.
 fn run_task(scene: &Scene, task: &Task, options: &RunOptions<'_>) -> Result<Option<TaskResult>, StudyError> {
     let started = Instant::now();
@@ -128,7 +136,7 @@ fn run_task(scene: &Scene, task: &Task, options: &RunOptions<'_>) -> Result<Opti
         || if options.cancel.load(Ordering::Relaxed) { Err(StudyError::Interrupted) } else { Ok(()) };
     match task {
         Task::Regular(spec) => {
-            let stored: Option<RegularRung> = options.store.load(&key, 0)?;
+            let stored: Option<RegularRung> = options.store.load(&key, 0, |rung| is_rung_of(rung, spec))?;
             let was_stored = stored.is_some();
             let rung = match stored {
                 Some(rung) => rung,
@@ -156,7 +164,12 @@ fn run_task(scene: &Scene, task: &Task, options: &RunOptions<'_>) -> Result<Opti
             let mut blocks: Vec<SampleBlock> = Vec::new();
             while (blocks.len() as u64) < most && !(blocks.len() >= 2 && is_precise(&blocks, precision)) {
                 let number = blocks.len() as u64;
-                let stored: Option<SampleBlock> = options.store.load(&key, number)?;
+                let stored: Option<SampleBlock> =
+                    options.store.load(&key, number, |block: &SampleBlock| {
+                        block.samples == size
+                            && block.degenerate <= size
+                            && block.moments.len() == spec.moments.len()
+                    })?;
                 let was_stored = stored.is_some();
                 let block = match stored {
                     Some(block) => block,

@@ -33,11 +33,16 @@ impl BlockStore {
         Self { folder: folder.into(), also }
     }
 
-    /// The block, if it is stored.
+    /// The block, if it is stored; `is_whole` says whether its data have the shape that the case needs.
     ///
     /// # Errors
     /// [`StudyError::ForeignBlock`] if the file is not a whole block of this key, [`StudyError::File`].
-    pub fn load<T: DeserializeOwned>(&self, key: &str, block: u64) -> Result<Option<T>, StudyError> {
+    pub fn load<T: DeserializeOwned>(
+        &self,
+        key: &str,
+        block: u64,
+        is_whole: impl Fn(&T) -> bool,
+    ) -> Result<Option<T>, StudyError> {
         for folder in std::iter::once(&self.folder).chain(&self.also) {
             let path = folder.join(file_name(key, block));
             let text = match fs::read_to_string(&path) {
@@ -53,6 +58,9 @@ impl BlockStore {
                 serde_json::from_str(&text).map_err(|error| foreign(error.to_string()))?;
             if stored.schema != SCHEMA || stored.key != key || stored.block != block || !stored.end {
                 return Err(foreign("it belongs to another case".into()));
+            }
+            if !is_whole(&stored.data) {
+                return Err(foreign("its data are not all there".into()));
             }
             return Ok(Some(stored.data));
         }
