@@ -1,7 +1,7 @@
 //! Scenes: one analysis as a file, TOML or JSON through the same structs.
 
 use super::source::{SceneError, SceneText};
-use crate::claim::{self, Claim, Powers, Quantity, Statement, Verdict};
+use crate::claim::{self, BetaExponent, Claim, Powers, Quantity, Statement, Verdict};
 use crate::exact::{Rational, int, ratio, rational_from_decimal, rational_to_f64};
 use crate::kernel::{self, Kernel};
 use crate::measured::neighbourhood_radius;
@@ -486,6 +486,10 @@ fn resolve_claims(
             );
             at(place("quantity"), message)
         })?;
+        let written = [("displacement", &own.displacement), ("h", &own.h), ("dx_over_h", &own.dx_over_h)];
+        for (field, text) in written {
+            BetaExponent::parse(text).map_err(|error| at(place(field), error.to_string()))?;
+        }
         let powers = Powers::parse(&own.displacement, &own.h, &own.dx_over_h)
             .map_err(|error| at(place("dx_over_h"), error.to_string()))?;
         powers.check(moment).map_err(|error| at(place("h"), error.to_string()))?;
