@@ -48,8 +48,8 @@ pub(super) struct RunArguments {
     #[arg(long, value_name = "I/N", value_parser = parse_shard)]
     pub(super) shard: Option<Shard>,
     /// Threads [default: one per core]
-    #[arg(long)]
-    pub(super) threads: Option<usize>,
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(super) threads: Option<u16>,
     /// Print the report as JSON instead of a table
     #[arg(long)]
     pub(super) json: bool,

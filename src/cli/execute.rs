@@ -18,7 +18,12 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(&scene.name));
     check_target(&out)?;
     let plan = Plan::within_budget(&scene)?;
-    let threads = arguments.threads.unwrap_or(0);
+    if let Some(missing) = arguments.from.iter().find(|folder| !folder.is_dir()) {
+        let message = format!("{} is no folder: name the folders of finished blocks", missing.display());
+        return Err(Failure::Arguments(message));
+    }
+    // None: rayon's own default, one per core.
+    let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
