@@ -13,7 +13,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum WriteError {
     /// A file stands where the report should go, and is no report.
-    #[error("{} is not a {SCHEMA} ({what}) and is left as it is: move it away, or write elsewhere with --out", path.display())]
+    #[error("{} does not belong to a {SCHEMA} ({what}) and is left as it is: move it away, or write elsewhere with --out", path.display())]
     Foreign {
         /// The file.
         path: PathBuf,
@@ -30,7 +30,8 @@ pub enum WriteError {
     },
 }
 
-/// Checks that a report may be written into a folder: that what stands there as `report.json` is one.
+/// Checks that a report may be written into a folder: that what stands there as `report.json` is one, and that nothing
+/// stands under the other names without it (`report.json` is written first, so what is there then is not ours).
 ///
 /// # Errors
 /// [`WriteError::Foreign`], [`WriteError::File`].
@@ -61,7 +62,14 @@ fn check_folder(folder: &Path) -> Result<(), WriteError> {
             path: path.to_owned(),
             what: "a file stands where a folder is needed".into(),
         }),
-        _ => Ok(()),
+        _ => match ["report.md", "timings.json"]
+            .map(|name| folder.join(name))
+            .into_iter()
+            .find(|p| p.exists())
+        {
+            Some(path) => Err(WriteError::Foreign { path, what: "there is no report.json beside it".into() }),
+            None => Ok(()),
+        },
     }
 }
 
