@@ -387,9 +387,10 @@ fn split_square_of(value: &Rational) -> (Rational, u64) {
     (int(whole as i64) / Rational::from_integer(value.denom().clone()), free.to_u64().unwrap_or(1))
 }
 
-/// The rational part of r^μ / k^μ: Π s_a^{⌊μ_a/2⌋}.
+/// The rational part of r_ij^μ / k^μ: (−1)^{|μ|} Π s_a^{⌊μ_a/2⌋}, as r_ij = r_i − r_j = −k √s for i at the origin.
 fn monomial_rational(lattice: &Lattice, monomial: &MultiIndex) -> Rational {
-    (0..3).fold(Rational::one(), |product, a| {
+    let sign = if monomial.order() % 2 == 0 { 1 } else { -1 };
+    (0..3).fold(int(sign), |product, a| {
         product * power(&lattice.axis_squares()[a], u32::from(monomial.powers[a] / 2))
     })
 }
