@@ -16,6 +16,7 @@ pub type Operation = [[Rational; 3]; 3];
 /// The operations that leave a site and its surroundings as they are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointGroup {
+    dimension: usize,
     operations: Vec<Operation>,
 }
 
@@ -53,7 +54,7 @@ impl PointGroup {
             .map(|image| linear_map(vectors, image, d))
             .filter(|operation| carries_basis_onto_itself(lattice, operation))
             .collect();
-        Self { operations }
+        Self { dimension: d, operations }
     }
 
     /// Number of operations.
@@ -68,15 +69,14 @@ impl PointGroup {
 
     /// Whether r → −r is among them.
     pub fn has_inversion(&self) -> bool {
-        let minus: Operation =
-            std::array::from_fn(|a| std::array::from_fn(|b| if a == b { int(-1) } else { int(0) }));
-        self.operations.iter().any(|operation| {
-            (0..3).all(|a| {
-                (0..3).all(|b| {
-                    operation[a][b] == minus[a][b] || (operation[a][b].is_one() && a == b && self.unused(a))
-                })
+        // Axes that the lattice does not have are left alone by every operation.
+        let minus: Operation = std::array::from_fn(|a| {
+            std::array::from_fn(|b| match a == b {
+                true if a < self.dimension => int(-1),
+                same => int(i64::from(same)),
             })
-        })
+        });
+        self.operations.contains(&minus)
     }
 
     /// The mean of k^monomial over the group.
@@ -87,14 +87,6 @@ impl PointGroup {
             .iter()
             .fold(Multivariate::zero(), |sum, operation| &sum + &one.substitute_linear(operation));
         sum.scale(&(int(1) / int(self.operations.len() as i64)))
-    }
-
-    /// Axes that the lattice does not have are left alone by every operation.
-    fn unused(&self, axis: usize) -> bool {
-        self.operations.iter().all(|o| {
-            o[axis][axis].is_one()
-                && (0..3).all(|b| b == axis || (o[axis][b].is_zero() && o[b][axis].is_zero()))
-        })
     }
 }
 
