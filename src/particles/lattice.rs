@@ -206,8 +206,12 @@ impl Lattice {
         let mut reach = [0; 3];
         if let Some(inverse) = matrix.try_inverse() {
             for (row, reach) in reach.iter_mut().enumerate().take(d) {
-                let reciprocal = inverse.column(row).norm();
-                *reach = (radius * reciprocal).ceil() as i64 + if self.basis.len() > 1 { 2 } else { 1 };
+                let reciprocal = inverse.column(row);
+                // How many cells away the basis names its particles.
+                let cells =
+                    |k: &SiteIndex| (0..d).map(|a| k[a] as f64 * units[a] * reciprocal[a]).sum::<f64>();
+                let basis = self.basis.iter().map(|k| cells(k).abs()).fold(0.0, f64::max);
+                *reach = (radius * reciprocal.norm() + basis).ceil() as i64 + 1;
             }
         }
         reach
