@@ -7,7 +7,8 @@
 use crate::exact::rational_to_f64;
 use crate::kernel::Kernel;
 use crate::particles::{
-    Cloud, CloudError, Disorder, Lattice, Moves, Neighbours, SampleStream, Site, Support, VolumeRule,
+    Cloud, CloudError, Disorder, Draw, Lattice, Motion, Moves, Neighbours, SampleStream, Site, Support,
+    VolumeRule,
 };
 use crate::sums::{Moment, PairSums};
 use rayon::prelude::*;
@@ -81,6 +82,10 @@ pub struct SampleBlock {
 /// A neighbourhood made ready for sampling.
 pub struct Sampler {
     spec: SampleSpec,
+    moves: Moves,
+    motion: Motion,
+    /// h/Δ.
+    h_over_dx: f64,
     sites: Vec<Site>,
     sums: PairSums<f64>,
     density: PairSums<f64>,
@@ -114,8 +119,8 @@ impl Sampler {
     /// As [`Sampler::block`].
     pub fn new(spec: SampleSpec) -> Result<Self, SampleError> {
         let dimension = spec.lattice.dimension();
-        let entry = spec.disorder.entry();
-        let longest = entry.longest[dimension - 1] * spec.amplitude;
+        let (moves, motion) = (spec.disorder.entry().moves, spec.disorder.motion());
+        let longest = motion.longest[dimension - 1] * spec.amplitude;
         let sites = spec.lattice.sites_within(neighbourhood_radius(spec.rule, spec.support_over_dx, longest));
         let sums = PairSums::new(&spec.kernel, dimension, &spec.moments);
         let density = PairSums::new(&spec.kernel, dimension, &[Moment::default()]);
@@ -123,8 +128,20 @@ impl Sampler {
         let kappa = rational_to_f64(spec.kernel.support_over_h());
         let to_h = spec.moments.iter().map(|moment| kappa.powi(moment.length_power())).collect();
         let weight = volume / power(spec.support_over_dx, dimension);
-        let mut sampler =
-            Self { spec, sites, sums, density, weight, regular: Vec::new(), to_h, floors: Vec::new() };
+        let h_over_dx = spec.support_over_dx / kappa;
+        let mut sampler = Self {
+            spec,
+            moves,
+            motion,
+            h_over_dx,
+            sites,
+            sums,
+            density,
+            weight,
+            regular: Vec::new(),
+            to_h,
+            floors: Vec::new(),
+        };
         let still: Vec<[f64; 3]> = sampler.sites.iter().map(|site| site.position).collect();
         if let Neighbourhood::Sums(regular, _) = sampler.evaluate(&still, 0)? {
             sampler.regular = regular;
@@ -178,17 +195,16 @@ impl Sampler {
     }
 
     fn displaced(&self, sample: u64) -> Vec<[f64; 3]> {
-        let entry = self.spec.disorder.entry();
-        let dimension = self.spec.lattice.dimension();
         let mut stream = SampleStream::new(self.spec.seed, sample);
         self.sites
             .iter()
             .map(|site| {
                 let centre = site.cell == [0; 3] && site.basis == 0;
-                if entry.moves == Moves::Nothing || (entry.moves == Moves::CentreOnly && !centre) {
+                if self.moves == Moves::Nothing || (self.moves == Moves::CentreOnly && !centre) {
                     return site.position;
                 }
-                let unit = (entry.unit)(dimension, &stream.words(site));
+                let mut draw = Draw::new(&self.spec.lattice, site, self.h_over_dx, &mut stream);
+                let unit = (self.motion.unit)(&mut draw);
                 std::array::from_fn(|a| site.position[a] + self.spec.amplitude * unit[a])
             })
             .collect()

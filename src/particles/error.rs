@@ -42,16 +42,33 @@ pub enum ParticleError {
         /// What is wrong with it.
         what: String,
     },
+    /// A disorder on a lattice of a dimension in which it has no meaning.
+    #[error("disorder '{text}' {what}, but lattice '{lattice}' has {dimension} dimension(s)")]
+    DisorderDimension {
+        /// As written.
+        text: String,
+        /// What it needs.
+        what: String,
+        /// The lattice.
+        lattice: String,
+        /// Its dimension.
+        dimension: usize,
+    },
     /// Displacements so large that neighbours may meet.
     #[error(
-        "disorder '{text}' moves particles by up to {reach} Δ; at 0.5 Δ and above neighbours can meet: lower the \
-         amplitude, or set allow_degenerate = true under [limits] to get typed results instead of numbers"
+        "disorder '{text}' moves particles by up to {reach} Δ, and on lattice '{lattice}' they stand {apart} Δ apart, so \
+         that neighbours can meet: lower the amplitude, or set allow_degenerate = true under [limits] to get typed \
+         results instead of numbers"
     )]
     DisorderTooLarge {
         /// As written.
         text: String,
-        /// The largest displacement along a line between neighbours, in Δ.
+        /// The largest displacement, or that along an axis where it is bounded by axis, in Δ.
         reach: f64,
+        /// The lattice.
+        lattice: String,
+        /// The distance of the neighbours, in the same norm.
+        apart: f64,
     },
     /// No volume rule of this name.
     #[error("there is no volume rule '{id}'{}; known rules: {known}", hint(nearest))]

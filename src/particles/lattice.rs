@@ -7,9 +7,13 @@
 use super::ParticleError;
 use crate::exact::{Radical, Rational, int, ratio, rational_to_f64};
 use crate::names::nearest;
+use num_integer::Integer;
 
 /// Whole-number coordinates of a site, r_a = k_a √s_a.
 pub type SiteIndex = [i64; 3];
+
+/// A cell has at most this many particles: each has its own stream of random words.
+pub const MOST_PARTICLES: usize = 63;
 
 /// A lattice with a basis. Lengths are in units of Δ: the cell edge for cubic lattices, the distance between nearest
 /// neighbours for the others.
@@ -64,6 +68,9 @@ impl Lattice {
         }
         if basis.first() != Some(&[0, 0, 0]) {
             return Err(fault("must have its first particle of the basis at the origin"));
+        }
+        if basis.len() > MOST_PARTICLES {
+            return Err(fault("has more than 63 particles in its cell"));
         }
         let lattice =
             Self { id: id.to_owned(), name: name.to_owned(), dimension, axis_squares, vectors, basis };
@@ -130,6 +137,30 @@ impl Lattice {
         })
     }
 
+    /// Whether a particle stands at k.
+    pub fn has_site(&self, k: SiteIndex) -> bool {
+        self.basis.iter().any(|b| self.is_lattice_vector(std::array::from_fn(|a| k[a] - b[a])))
+    }
+
+    /// Whether the vector k carries the whole lattice onto itself. Where the cell is not the smallest one, these are more
+    /// than those that join cells.
+    pub fn is_translation(&self, k: SiteIndex) -> bool {
+        self.basis.iter().all(|b| self.has_site(std::array::from_fn(|a| k[a] + b[a])))
+    }
+
+    /// The row (in 3-D, layer) a site is in, counted along the last axis from that of particle i: sites of one row have
+    /// the same last coordinate. In 1-D every site is its own.
+    pub fn row(&self, cell: [i64; 3], basis: usize) -> i64 {
+        let last = self.dimension - 1;
+        let period = self.vectors().iter().fold(0_i64, |gcd, vector| gcd.gcd(&vector[last]));
+        let mut heights: Vec<i64> = self.basis.iter().map(|b| b[last].rem_euclid(period)).collect();
+        heights.sort_unstable();
+        heights.dedup();
+        let height = (0..3).map(|row| cell[row] * self.vectors[row][last]).sum::<i64>() + self.basis[basis][last];
+        let within = heights.partition_point(|other| *other < height.rem_euclid(period));
+        height.div_euclid(period) * heights.len() as i64 + within as i64
+    }
+
     /// Whether the vector k joins two cells.
     pub fn is_lattice_vector(&self, k: SiteIndex) -> bool {
         let determinant = self.cell_determinant();
@@ -160,6 +191,43 @@ impl Lattice {
     /// Visits the whole-number coordinates of all sites with |r|² ≤ `radius`² up to rounding.
     pub fn visit_indices(&self, radius: f64, mut visit: impl FnMut(SiteIndex)) {
         self.for_each_site(radius, |_, _, k, _| visit(k));
+    }
+
+    /// All vectors within `radius` (in Δ) from a particle of the cell to another particle.
+    pub fn separations_within(&self, radius: f64) -> Vec<[f64; 3]> {
+        let units = self.axis_units();
+        let mut separations = Vec::new();
+        for from in &self.basis {
+            let origin: [f64; 3] = std::array::from_fn(|a| from[a] as f64 * units[a]);
+            let extent = origin.iter().map(|x| x * x).sum::<f64>().sqrt();
+            self.for_each_site(radius + extent, |_, _, k, position| {
+                let r: [f64; 3] = std::array::from_fn(|a| position[a] - origin[a]);
+                if k != *from && r[0] * r[0] + r[1] * r[1] + r[2] * r[2] <= radius * radius * (1.0 + 1e-12) {
+                    separations.push(r);
+                }
+            });
+        }
+        separations
+    }
+
+    /// The square of the least distance between two particles, in Δ².
+    pub fn least_square(&self) -> Rational {
+        let units = self.axis_units();
+        let place = |k: &SiteIndex| -> [f64; 3] { std::array::from_fn(|a| k[a] as f64 * units[a]) };
+        // Two particles a vector of the cell apart are no nearest ones if others are nearer.
+        let start = self.vectors().iter().map(|vector| self.square(vector)).min().unwrap_or_else(|| int(1));
+        let radius = rational_to_f64(&start).sqrt() * (1.0 + 1e-9);
+        let mut least = start;
+        for from in &self.basis {
+            let extent = place(from).iter().map(|x| x * x).sum::<f64>().sqrt();
+            self.visit_indices(radius + extent, |k| {
+                let square = self.square(&std::array::from_fn(|a| k[a] - from[a]));
+                if k != *from && square < least {
+                    least = square;
+                }
+            });
+        }
+        least
     }
 
     /// About how many sites lie within `radius` (in Δ).
@@ -236,6 +304,22 @@ fn determinant_of(rows: &[SiteIndex; 3], dimension: usize) -> i64 {
 }
 
 /// The lattices that can be named in a scene or on the command line.
+///
+/// Cartesian vectors in units of Δ:
+///
+/// | id | a₁, a₂, a₃ | basis | volume per particle | nearest |
+/// | --- | --- | --- | --- | --- |
+/// | `line` | (1) | origin | 1 | 2 at 1 |
+/// | `square` | (1, 0), (0, 1) | origin | 1 | 4 at 1 |
+/// | `staggered` | (1, 0), (1/2, 1) | origin | 1 | 2 at 1, then 4 at √5/2 |
+/// | `hexagonal` | (1, 0), (1/2, √3/2) | origin | √3/2 | 6 at 1 |
+/// | `simple-cubic` | (1, 0, 0), (0, 1, 0), (0, 0, 1) | origin | 1 | 6 at 1 |
+/// | `bcc` | (−1, 1, 1)/2, (1, −1, 1)/2, (1, 1, −1)/2 | origin | 1/2 | 8 at √3/2 |
+/// | `fcc` | (0, 1, 1)/2, (1, 0, 1)/2, (1, 1, 0)/2 | origin | 1/4 | 12 at 1/√2 |
+/// | `hcp` | (1, 0, 0), (1/2, √3/2, 0), (0, 0, √(8/3)) | origin, (1/2, 1/(2√3), √(2/3)) | 1/√2 | 12 at 1 |
+///
+/// `staggered` is the square lattice with every other row shifted by Δ/2. Δ is the cell edge for `bcc` and `fcc`. `hcp`
+/// has the ideal c/a = √(8/3); it is no Bravais lattice and its sites are not centres of inversion.
 pub fn catalogue() -> Vec<Lattice> {
     let one = || int(1);
     let zero = [0, 0, 0];
@@ -246,6 +330,15 @@ pub fn catalogue() -> Vec<Lattice> {
     vec![
         entry("line", "line", 1, [one(), one(), one()], [[1, 0, 0], zero, zero], vec![zero]),
         entry("square", "square", 2, [one(), one(), one()], [[1, 0, 0], [0, 1, 0], zero], vec![zero]),
+        // Every other row shifted by Δ/2, rows Δ apart: a₁ = (1, 0), a₂ = (1/2, 1).
+        entry(
+            "staggered",
+            "staggered rows",
+            2,
+            [ratio(1, 4), one(), one()],
+            [[2, 0, 0], [1, 1, 0], zero],
+            vec![zero],
+        ),
         // Triangular cells: a₁ = (1, 0), a₂ = (1/2, √3/2).
         entry(
             "hexagonal",
@@ -263,6 +356,33 @@ pub fn catalogue() -> Vec<Lattice> {
             [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
             vec![zero],
         ),
+        // Cell edge 1: a₁ = (−1, 1, 1)/2 and its permutations.
+        entry(
+            "bcc",
+            "body-centred cubic",
+            3,
+            [ratio(1, 4), ratio(1, 4), ratio(1, 4)],
+            [[-1, 1, 1], [1, -1, 1], [1, 1, -1]],
+            vec![zero],
+        ),
+        // Cell edge 1: a₁ = (0, 1, 1)/2 and its permutations.
+        entry(
+            "fcc",
+            "face-centred cubic",
+            3,
+            [ratio(1, 4), ratio(1, 4), ratio(1, 4)],
+            [[0, 1, 1], [1, 0, 1], [1, 1, 0]],
+            vec![zero],
+        ),
+        // Triangular layers A, B at the ideal distance √(2/3): a₁ = (1, 0, 0), a₂ = (1/2, √3/2, 0), a₃ = (0, 0, √(8/3)).
+        entry(
+            "hcp",
+            "hexagonal close packing",
+            3,
+            [ratio(1, 4), ratio(1, 12), ratio(2, 3)],
+            [[2, 0, 0], [1, 3, 0], [0, 0, 2]],
+            vec![zero, [1, 1, 1]],
+        ),
     ]
 }
 
@@ -271,7 +391,15 @@ pub fn catalogue() -> Vec<Lattice> {
 /// # Errors
 /// [`ParticleError::UnknownLattice`] with the nearest known id.
 pub fn lattice_by_id(id: &str) -> Result<Lattice, ParticleError> {
-    let known = catalogue();
+    lattice_among(id, &[])
+}
+
+/// The lattice with this id in the catalogue or among one's own.
+///
+/// # Errors
+/// [`ParticleError::UnknownLattice`] with the nearest known id.
+pub fn lattice_among(id: &str, own: &[Lattice]) -> Result<Lattice, ParticleError> {
+    let known: Vec<Lattice> = catalogue().into_iter().chain(own.iter().cloned()).collect();
     let ids: Vec<&str> = known.iter().map(Lattice::id).collect();
     match ids.iter().position(|candidate| *candidate == id) {
         Some(index) => Ok(known[index].clone()),

@@ -12,10 +12,10 @@ mod symmetry;
 mod volume;
 
 pub use cloud::{ClosestPair, Cloud, CloudError, LENGTH_LIMIT, PERIODS_LIMIT, Quantity, Support};
-pub use disorder::{Disorder, DisorderModel, Moves};
+pub use disorder::{Disorder, DisorderModel, Draw, Motion, Moves, Reach};
 pub use error::ParticleError;
-pub use lattice::{Lattice, Site, SiteIndex, lattice_by_id};
+pub use lattice::{Lattice, Site, SiteIndex, lattice_among, lattice_by_id};
 pub use neighbours::{Neighbour, Neighbours};
 pub use stream::SampleStream;
-pub use symmetry::{Operation, PointGroup};
+pub use symmetry::{Operation, PointGroup, sites_are_equivalent};
 pub use volume::VolumeRule;

@@ -1,6 +1,6 @@
 //! The point group of a lattice site, computed, and what it makes of a monomial.
 //!
-//! The group is found by trying all images of the lattice vectors among lattice vectors of the same length and keeping
+//! The group is found by trying all images of the lattice vectors among translations of the same length and keeping
 //! the maps that preserve every scalar product and carry the particles around the site onto each other. In the
 //! whole-number coordinates k (see [`super::lattice`]) its matrices are rational, so the mean of a monomial over the
 //! group is an exact polynomial: a moment component vanishes by symmetry when that polynomial is zero, and two
@@ -23,38 +23,11 @@ pub struct PointGroup {
 impl PointGroup {
     /// The point group at the first particle of the basis.
     pub fn of(lattice: &Lattice) -> Self {
-        let d = lattice.dimension();
-        let vectors = lattice.vectors();
-        let product = |a: &SiteIndex, b: &SiteIndex| {
-            (0..d).fold(int(0), |sum, axis| sum + &lattice.axis_squares()[axis] * int(a[axis] * b[axis]))
-        };
-        let longest = vectors.iter().map(|v| rational_to_f64(&lattice.square(v))).fold(0.0, f64::max).sqrt();
-        let candidates: Vec<SiteIndex> = lattice
-            .indices_within(longest * 1.001)
+        let operations = isometries(lattice)
             .into_iter()
-            .filter(|k| lattice.is_lattice_vector(*k) && *k != [0, 0, 0])
+            .filter(|operation| carries_sites_onto_sites(lattice, operation, &[0, 0, 0]))
             .collect();
-        let mut images: Vec<Vec<SiteIndex>> = vec![Vec::new()];
-        for (row, vector) in vectors.iter().enumerate() {
-            images = images
-                .into_iter()
-                .flat_map(|chosen| {
-                    let (chosen, product) = (chosen.clone(), &product);
-                    candidates.iter().filter_map(move |candidate| {
-                        let fits = product(candidate, candidate) == product(vector, vector)
-                            && (0..row)
-                                .all(|i| product(candidate, &chosen[i]) == product(vector, &vectors[i]));
-                        fits.then(|| [chosen.as_slice(), &[*candidate]].concat())
-                    })
-                })
-                .collect();
-        }
-        let operations = images
-            .iter()
-            .map(|image| linear_map(vectors, image, d))
-            .filter(|operation| carries_basis_onto_itself(lattice, operation))
-            .collect();
-        Self { dimension: d, operations }
+        Self { dimension: lattice.dimension(), operations }
     }
 
     /// Number of operations.
@@ -69,14 +42,11 @@ impl PointGroup {
 
     /// Whether r → −r is among them.
     pub fn has_inversion(&self) -> bool {
-        // Axes that the lattice does not have are left alone by every operation.
-        let minus: Operation = std::array::from_fn(|a| {
-            std::array::from_fn(|b| match a == b {
-                true if a < self.dimension => int(-1),
-                same => int(i64::from(same)),
-            })
-        });
-        self.operations.contains(&minus)
+        let minus = |a: usize, b: usize| if a == b { int(-1) } else { int(0) };
+        let axes = 0..self.dimension;
+        self.operations.iter().any(|operation| {
+            axes.clone().all(|a| axes.clone().all(|b| operation[a][b] == minus(a, b)))
+        })
     }
 
     /// The mean of k^monomial over the group.
@@ -129,13 +99,57 @@ fn apply(operation: &Operation, k: &SiteIndex) -> Option<SiteIndex> {
     Some(image)
 }
 
-fn carries_basis_onto_itself(lattice: &Lattice, operation: &Operation) -> bool {
+/// Whether k → Mk + `shift` carries every particle onto a particle.
+fn carries_sites_onto_sites(lattice: &Lattice, operation: &Operation, shift: &SiteIndex) -> bool {
     lattice.basis().iter().all(|particle| {
-        apply(operation, particle).is_some_and(|image| {
-            lattice
-                .basis()
-                .iter()
-                .any(|other| lattice.is_lattice_vector(std::array::from_fn(|a| image[a] - other[a])))
-        })
+        apply(operation, particle)
+            .is_some_and(|image| lattice.has_site(std::array::from_fn(|a| image[a] + shift[a])))
     })
+}
+
+/// Whether some isometry of the lattice carries its first particle onto each other one: then every particle sees the same
+/// distances, and Σ_k W_jk is the same for all j.
+///
+/// # Examples
+/// ```
+/// use remainder::particles::{lattice_by_id, sites_are_equivalent};
+/// assert!(sites_are_equivalent(&lattice_by_id("hcp").unwrap()));
+/// ```
+pub fn sites_are_equivalent(lattice: &Lattice) -> bool {
+    let isometries = isometries(lattice);
+    lattice.basis().iter().all(|target| {
+        isometries.iter().any(|operation| carries_sites_onto_sites(lattice, operation, target))
+    })
+}
+
+/// All linear maps that carry the lattice's translations onto translations and preserve scalar products.
+fn isometries(lattice: &Lattice) -> Vec<Operation> {
+    let d = lattice.dimension();
+    let vectors = lattice.vectors();
+    let product = |a: &SiteIndex, b: &SiteIndex| {
+        (0..d).fold(int(0), |sum, axis| sum + &lattice.axis_squares()[axis] * int(a[axis] * b[axis]))
+    };
+    let squares: Vec<Rational> = vectors.iter().map(|v| lattice.square(v)).collect();
+    let longest = squares.iter().map(rational_to_f64).fold(0.0, f64::max).sqrt();
+    let candidates: Vec<(SiteIndex, Rational)> = lattice
+        .indices_within(longest * 1.001)
+        .into_iter()
+        .map(|k| (k, lattice.square(&k)))
+        .filter(|(k, square)| squares.contains(square) && lattice.is_translation(*k))
+        .collect();
+    let mut images: Vec<Vec<SiteIndex>> = vec![Vec::new()];
+    for (row, vector) in vectors.iter().enumerate() {
+        images = images
+            .into_iter()
+            .flat_map(|chosen| {
+                let (chosen, product, squares) = (chosen.clone(), &product, &squares);
+                candidates.iter().filter_map(move |(candidate, square)| {
+                    let fits = *square == squares[row]
+                        && (0..row).all(|i| product(candidate, &chosen[i]) == product(vector, &vectors[i]));
+                    fits.then(|| [chosen.as_slice(), &[*candidate]].concat())
+                })
+            })
+            .collect();
+    }
+    images.iter().map(|image| linear_map(vectors, image, d)).collect()
 }

@@ -3,6 +3,7 @@
 //! Emits events and prints nothing. The caller chooses threads (by the rayon pool it calls from), cancellation and the
 //! sink of events. What a study returns is a pure function of the scene and its stored blocks.
 
+mod define_lattice;
 mod error;
 mod event;
 mod judge;

@@ -263,7 +263,7 @@ impl Task {
             Self::Regular(spec) => (spec.supports.iter().map(rational_text).collect(), None),
             Self::Samples { spec, support } => (
                 vec![rational_text(support)],
-                Some((spec.disorder.model().to_owned(), spec.amplitude, spec.seed)),
+                Some((spec.disorder.model_and_options(), spec.amplitude, spec.seed)),
             ),
         };
         let inputs = Inputs {

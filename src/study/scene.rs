@@ -1,11 +1,12 @@
 //! Scenes: one analysis as a file, TOML or JSON through the same structs.
 
+use super::define_lattice::{self, OwnLattice};
 use super::source::{SceneError, SceneText};
 use crate::claim::{self, BetaExponent, Claim, Powers, Quantity, Statement, Verdict};
 use crate::exact::{Rational, int, ratio, rational_from_decimal, rational_to_f64};
 use crate::kernel::{self, Kernel};
 use crate::measured::neighbourhood_radius;
-use crate::particles::{Disorder, Lattice, Moves, VolumeRule, lattice_by_id};
+use crate::particles::{Disorder, Lattice, Moves, VolumeRule, lattice_among};
 use crate::sums::{Moment, nearest_distance};
 use itertools::Itertools as _;
 use num_traits::ToPrimitive;
@@ -25,6 +26,9 @@ pub struct RawScene {
     pub study: StudyTable,
     /// What to place.
     pub cases: CasesTable,
+    /// What the scene adds to the catalogues.
+    #[serde(default, skip_serializing_if = "DefineTable::is_empty")]
+    pub define: DefineTable,
     /// What to check.
     #[serde(default)]
     pub claims: ClaimsTable,
@@ -60,6 +64,21 @@ pub struct StudyTable {
 impl Default for StudyTable {
     fn default() -> Self {
         Self { kind: "moment-orders".into(), title: String::new(), seed: 1 }
+    }
+}
+
+/// `[define]`: entries of one's own, named by their ids in `[cases]`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct DefineTable {
+    /// Lattices.
+    pub lattice: Vec<OwnLattice>,
+}
+
+impl DefineTable {
+    /// Whether the scene adds nothing.
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
     }
 }
 
@@ -300,7 +319,8 @@ impl Scene {
         }
         let at = |keys: String, message: String| text.error_at(&keys, message, None);
         let kernels = each(&raw.cases.kernels, "cases.kernels", at, kernel::by_id)?;
-        let lattices = each(&raw.cases.lattices, "cases.lattices", at, lattice_by_id)?;
+        let own_lattices = define_lattice::resolve(&raw.define.lattice, text)?;
+        let lattices = each(&raw.cases.lattices, "cases.lattices", at, |id| lattice_among(id, &own_lattices))?;
         let rules = each(&raw.cases.volume_rules, "cases.volume_rules", at, VolumeRule::by_id)?;
         for (list, key) in
             [(kernels.len(), "kernels"), (lattices.len(), "lattices"), (rules.len(), "volume_rules")]
@@ -312,8 +332,11 @@ impl Scene {
         let allow = raw.limits.allow_degenerate;
         let disorders = each(&raw.cases.disorders, "cases.disorders", at, |text| {
             let disorder = Disorder::parse(text)?;
-            if !allow {
-                disorder.check_reach()?;
+            for lattice in &lattices {
+                disorder.check_dimension(lattice)?;
+                if !allow {
+                    disorder.check_reach(lattice)?;
+                }
             }
             Ok::<_, crate::particles::ParticleError>(disorder)
         })?;
@@ -353,7 +376,7 @@ impl Scene {
         let allowed = self.raw.limits.memory_mib;
         for (disorder, lattice) in self.disorders.iter().cartesian_product(&self.lattices) {
             let (entry, dimension) = (disorder.entry(), lattice.dimension());
-            let longest = entry.longest[dimension - 1] * disorder.amplitude();
+            let longest = disorder.motion().longest[dimension - 1] * disorder.amplitude();
             let ladders = self.kernels.iter().map(|kernel| self.disorder_ladder(dimension, kernel, entry.moves));
             let mut supports = ladders.flatten().concat();
             supports.push(self.displacement_ladder(dimension).0);

@@ -54,6 +54,26 @@ pub enum SumError {
         /// What is allowed.
         allowed_mib: u64,
     },
+    /// Whole numbers of the lattice that would not fit their types.
+    #[error(
+        "lattice '{lattice}' has coordinates too fine for exact sums out to R/Δ = {support_over_dx}: lower R/Δ, the \
+         order of the moments, or the denominators of its coordinates"
+    )]
+    TooFine {
+        /// R/Δ.
+        support_over_dx: f64,
+        /// The lattice.
+        lattice: String,
+    },
+    /// ΣW differs between the particles of a cell.
+    #[error(
+        "the particles of lattice '{lattice}' are not equivalent, so V = 1/ΣW differs between them and exact sums do not \
+         apply: use the volume rule 'constant', or a lattice with equivalent particles"
+    )]
+    UnequalVolumes {
+        /// The lattice.
+        lattice: String,
+    },
     /// ΣW vanishes, so V = 1/ΣW does not exist.
     #[error("ΣW vanishes at R/Δ = {support_over_dx}: V = 1/ΣW does not exist")]
     NoVolume {

@@ -13,7 +13,7 @@ use super::shells::{Shells, split_square};
 use super::{Moment, SumError};
 use crate::exact::{Coefficient, Enclosure, MultiIndex, Radical, Rational, int, rational_to_f64};
 use crate::kernel::{Kernel, RadialPiece};
-use crate::particles::{Lattice, VolumeRule};
+use crate::particles::{Lattice, VolumeRule, sites_are_equivalent};
 use num_bigint::{BigInt, BigUint};
 use num_integer::Integer;
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -28,6 +28,8 @@ pub struct LatticeSums {
     kernel: Kernel,
     lattice: Lattice,
     shells: Shells,
+    /// Whether Σ W is the same at every particle, which V = 1/ΣW takes for granted here.
+    equivalent_sites: bool,
 }
 
 /// The sites of one support.
@@ -43,7 +45,7 @@ impl LatticeSums {
     /// Gathers the shells out to `largest` = R/Δ for these moments (and Σ W, which the number-density rule needs).
     ///
     /// # Errors
-    /// [`SumError::Memory`] before anything large is allocated, [`SumError::Support`].
+    /// [`SumError::Memory`] before anything large is allocated, [`SumError::Support`], [`SumError::TooFine`].
     pub fn new(
         kernel: &Kernel,
         lattice: &Lattice,
@@ -67,8 +69,21 @@ impl LatticeSums {
                 allowed_mib: memory_mib,
             });
         }
+        if !Shells::fit(lattice, radius, &monomials) {
+            return Err(SumError::TooFine { support_over_dx: radius, lattice: lattice.id().to_owned() });
+        }
         let shells = Shells::gather(lattice, radius, &monomials);
-        Ok(Self { kernel: kernel.clone(), lattice: lattice.clone(), shells })
+        let equivalent_sites = sites_are_equivalent(lattice);
+        Ok(Self { kernel: kernel.clone(), lattice: lattice.clone(), shells, equivalent_sites })
+    }
+
+    /// # Errors
+    /// [`SumError::UnequalVolumes`] if Σ W differs from particle to particle.
+    fn check_equal_volumes(&self) -> Result<(), SumError> {
+        if self.equivalent_sites {
+            return Ok(());
+        }
+        Err(SumError::UnequalVolumes { lattice: self.lattice.id().to_owned() })
     }
 
     /// How many particles the support holds.
@@ -91,7 +106,7 @@ impl LatticeSums {
     /// V = 1/ΣW.
     ///
     /// # Errors
-    /// [`SumError::NoVolume`] if ΣW vanishes under the number-density rule.
+    /// [`SumError::NoVolume`] if ΣW vanishes under the number-density rule, [`SumError::UnequalVolumes`].
     pub fn exact(
         &self,
         support_over_dx: &Rational,
@@ -102,6 +117,7 @@ impl LatticeSums {
         match rule {
             VolumeRule::Constant => Ok(Coefficient::from(&numerator * &self.lattice.particle_volume())),
             VolumeRule::NumberDensity => {
+                self.check_equal_volumes()?;
                 let sum_w = self.bare(support_over_dx, &sum_w_component(self.lattice.dimension()));
                 Coefficient::quotient(numerator, sum_w)
                     .map_err(|_| SumError::NoVolume { support_over_dx: rational_to_f64(support_over_dx) })
@@ -112,7 +128,8 @@ impl LatticeSums {
     /// Enclosures of components, in units of Δ, from `bits` fractional bits.
     ///
     /// # Errors
-    /// [`SumError::NoVolume`] if ΣW is not shown to differ from zero under the number-density rule.
+    /// [`SumError::NoVolume`] if ΣW is not shown to differ from zero under the number-density rule,
+    /// [`SumError::UnequalVolumes`].
     pub fn enclose(
         &self,
         support_over_dx: &Rational,
@@ -126,6 +143,7 @@ impl LatticeSums {
         match rule {
             VolumeRule::Constant => Ok(weigh(&self.lattice.particle_volume().enclose(bits + 32))),
             VolumeRule::NumberDensity => {
+                self.check_equal_volumes()?;
                 let sum_w = sum_w_component(self.lattice.dimension());
                 let table = RadialTable::new(self, support_over_dx, std::slice::from_ref(&sum_w), bits);
                 let density = table.sum(&sum_w);

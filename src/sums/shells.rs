@@ -1,6 +1,6 @@
 //! The sites of a lattice gathered into shells of equal |r|, with the exact moments of each shell.
 
-use crate::exact::{MultiIndex, Radical, Rational, int};
+use crate::exact::{MultiIndex, Radical, Rational, int, rational_to_f64};
 use crate::particles::Lattice;
 use num_bigint::BigUint;
 use num_integer::Integer;
@@ -21,20 +21,19 @@ pub struct Shells {
 }
 
 impl Shells {
+    /// Whether levels and sums out to `radius` (in Δ) fit their types, with room to spare.
+    pub fn fit(lattice: &Lattice, radius: f64, monomials: &[MultiIndex]) -> bool {
+        let (weights, unit) = level_weights(lattice);
+        let levels = radius * radius / rational_to_f64(&unit);
+        let k = weights.iter().map(|weight| (levels / *weight as f64).sqrt()).fold(1.0, f64::max);
+        let order = monomials.iter().map(MultiIndex::order).max().unwrap_or(0);
+        let sums = lattice.estimate_within(radius + 1.0) * k.powi(order as i32);
+        !weights.contains(&i64::MAX) && levels < 2_f64.powi(60) && sums < 2_f64.powi(120)
+    }
+
     /// Gathers the sites within `radius` (in Δ), with Σ k^μ for each monomial asked for.
     pub fn gather(lattice: &Lattice, radius: f64, monomials: &[MultiIndex]) -> Self {
-        let squares = &lattice.axis_squares()[..lattice.dimension()];
-        // The common measure of the axis squares: |r|² is a whole multiple of it.
-        let denominator = squares.iter().fold(num_bigint::BigInt::from(1), |lcm, s| lcm.lcm(s.denom()));
-        let numerators: Vec<i64> = squares
-            .iter()
-            .map(|s| {
-                (s * Rational::from_integer(denominator.clone())).to_integer().to_i64().unwrap_or(i64::MAX)
-            })
-            .collect();
-        let common = numerators.iter().fold(0_i64, |gcd, n| gcd.gcd(n));
-        let weights: Vec<i64> = numerators.iter().map(|n| n / common).collect();
-        let unit = Rational::new(common.into(), denominator);
+        let (weights, unit) = level_weights(lattice);
         let mut monomials = monomials.to_vec();
         monomials.sort();
         monomials.dedup();
@@ -103,6 +102,18 @@ impl Shells {
         });
         Radical::sqrt_of(&product).unwrap_or_default()
     }
+}
+
+/// Whole numbers w_a and the unit in Δ² with |r|² = Σ w_a k_a² · unit; an w_a beyond its type is `i64::MAX`.
+fn level_weights(lattice: &Lattice) -> (Vec<i64>, Rational) {
+    let squares = &lattice.axis_squares()[..lattice.dimension()];
+    // The common measure of the axis squares: |r|² is a whole multiple of it.
+    let denominator = squares.iter().fold(num_bigint::BigInt::from(1), |lcm, s| lcm.lcm(s.denom()));
+    let numerators: Vec<_> =
+        squares.iter().map(|s| (s * Rational::from_integer(denominator.clone())).to_integer()).collect();
+    let common = numerators.iter().fold(num_bigint::BigInt::from(0), |gcd, n| gcd.gcd(n));
+    let weights = numerators.iter().map(|n| (n / &common).to_i64().unwrap_or(i64::MAX)).collect();
+    (weights, Rational::new(common, denominator))
 }
 
 /// n = square² · free with free squarefree, for a level of a shell.

@@ -1,21 +1,27 @@
 //! Disorder models: how particles leave their lattice.
 //!
 //! A scene writes `MODEL:AMPLITUDE[,key=value…]` with the amplitude as in the model's paper. Displacements are linear in
-//! the amplitude: d = amplitude · Δ · u(site), with u drawn from the random words of the site alone. A new model is one
-//! file here and one entry in [`catalogue`].
+//! the amplitude: d = amplitude · Δ · u(site), with u drawn from random words that are a pure function of (seed, sample,
+//! site). A new model is one file here and one entry in [`catalogue`].
 
 mod canonical;
+mod direction;
+mod draw;
+mod gaussian;
 mod offset;
+mod options;
 mod random_box;
+mod shear;
+mod wave;
+
+pub use draw::{Draw, SiteWords};
+pub use options::Options;
 
 use super::ParticleError;
+use super::lattice::Lattice;
 use crate::names::nearest;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::fmt;
-
-/// Random words of one site: a pure function of (seed, sample, site).
-pub type SiteWords = [u64; 4];
 
 /// Which particles a model moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,8 +30,10 @@ pub enum Moves {
     Nothing,
     /// Particle i, at which the sums are taken, and no other.
     CentreOnly,
-    /// All particles, the centre like any other.
+    /// All particles, the centre like any other, each by a displacement independent of the others'.
     All,
+    /// All particles, by displacements that depend on each other: sums may oscillate with R/Δ as on the lattice.
+    Together,
 }
 
 /// One disorder model of the catalogue.
@@ -38,14 +46,40 @@ pub struct DisorderModel {
     pub citation: &'static str,
     /// What it moves.
     pub moves: Moves,
-    /// u(site), the displacement in units of amplitude · Δ, from the dimension and the words of the site.
-    pub unit: fn(usize, &SiteWords) -> [f64; 3],
-    /// The largest |u| along a coordinate axis or between two neighbours on a line: `reach · amplitude` ≥ 1/2 lets
-    /// neighbours meet.
-    pub reach: f64,
+    /// The keys of the options it knows.
+    pub options: &'static [&'static str],
+    /// The motion under the options of a scene; what is wrong with them otherwise.
+    pub motion: fn(&Options) -> Result<Motion, String>,
+}
+
+/// u(site), the displacement in units of amplitude · Δ.
+pub type Displacement = Box<dyn Fn(&mut Draw<'_>) -> [f64; 3] + Send + Sync>;
+
+/// A model with its options read.
+pub struct Motion {
+    /// u(site).
+    pub unit: Displacement,
+    /// How far u brings two particles together.
+    pub reach: Reach,
     /// The largest |u| in each dimension 1, 2, 3.
     pub longest: [f64; 3],
+    /// The smallest dimension in which it has a meaning.
+    pub least_dimension: usize,
 }
+
+/// How far u of two particles brings them together: whether neighbours can meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reach {
+    /// Not at all: the motion keeps particles apart.
+    Never,
+    /// |u| ≤ this in any direction.
+    Ball(f64),
+    /// |u_a| ≤ this along each axis.
+    PerAxis(f64),
+}
+
+/// Displacements beyond this many Δ are refused whatever the model: they only cost memory.
+const FARTHEST: f64 = 16.0;
 
 /// All disorder models.
 pub fn catalogue() -> Vec<DisorderModel> {
@@ -55,13 +89,22 @@ pub fn catalogue() -> Vec<DisorderModel> {
             formula: "d = 0",
             citation: "fatehi-manzari-2011, §4.1",
             moves: Moves::Nothing,
-            unit: |_, _| [0.0; 3],
-            reach: 0.0,
-            longest: [0.0; 3],
+            options: &[],
+            motion: |_| {
+                Ok(Motion {
+                    unit: Box::new(|_| [0.0; 3]),
+                    reach: Reach::Never,
+                    longest: [0.0; 3],
+                    least_dimension: 1,
+                })
+            },
         },
         offset::model(),
         random_box::model(),
         canonical::model(),
+        gaussian::model(),
+        wave::model(),
+        shear::model(),
     ]
 }
 
@@ -71,7 +114,7 @@ pub fn catalogue() -> Vec<DisorderModel> {
 pub struct Disorder {
     model: String,
     amplitude: f64,
-    options: BTreeMap<String, String>,
+    options: Options,
     text: String,
 }
 
@@ -79,13 +122,15 @@ impl Disorder {
     /// Reads `MODEL:AMPLITUDE[,key=value…]`; `none` stands alone.
     ///
     /// # Errors
-    /// Unknown models (with the nearest known one), missing, negative or non-finite amplitudes, unknown options.
+    /// Unknown models (with the nearest known one), missing, negative or non-finite amplitudes, displacements beyond 16 Δ,
+    /// options that the model does not know (with those it does), options without meaning.
     ///
     /// # Examples
     /// ```
     /// use remainder::particles::Disorder;
     /// assert_eq!(Disorder::parse("box:0.4").unwrap().amplitude(), 0.4);
     /// assert!(Disorder::parse("boxx:0.4").unwrap_err().to_string().contains("did you mean 'box'"));
+    /// assert!(Disorder::parse("wave:0.1,wavelength=8,unit=dx").is_ok());
     /// ```
     pub fn parse(text: &str) -> Result<Self, ParticleError> {
         let fault = |what: String| ParticleError::Disorder { text: text.to_owned(), what };
@@ -114,20 +159,23 @@ impl Disorder {
         if !amplitude.is_finite() || amplitude < 0.0 || (amplitude == 0.0 && entry.moves != Moves::Nothing) {
             return Err(fault(format!("has an amplitude {amplitude}, which must be finite and positive")));
         }
-        if let Some(option) = parts.next() {
-            return Err(fault(format!("has an option '{option}' that model '{model}' does not know")));
+        let options = Options::parse(parts, model, entry.options).map_err(fault)?;
+        let motion = (entry.motion)(&options).map_err(fault)?;
+        let farthest = motion.longest.iter().fold(0.0, |most: f64, u| most.max(u * amplitude));
+        if farthest > FARTHEST {
+            return Err(fault(format!("moves particles by up to {farthest} Δ, more than {FARTHEST} Δ")));
         }
-        Ok(Self {
-            model: model.to_owned(),
-            amplitude,
-            options: BTreeMap::new(),
-            text: text.trim().to_owned(),
-        })
+        Ok(Self { model: model.to_owned(), amplitude, options, text: text.trim().to_owned() })
     }
 
     /// The id of the model.
     pub fn model(&self) -> &str {
         &self.model
+    }
+
+    /// The model and its options in alphabetical order, `wave,unit=dx,wavelength=8`: all but the amplitude.
+    pub fn model_and_options(&self) -> String {
+        format!("{}{}", self.model, self.options)
     }
 
     /// The amplitude in the units of its paper.
@@ -143,14 +191,46 @@ impl Disorder {
             .unwrap_or_else(|| unreachable!("parse admits known models only"))
     }
 
+    /// The model with the options read.
+    pub fn motion(&self) -> Motion {
+        (self.entry().motion)(&self.options)
+            .unwrap_or_else(|what| unreachable!("parse has read these options: {what}"))
+    }
+
     /// # Errors
-    /// [`ParticleError::DisorderTooLarge`] if neighbours can meet: displacements of 0.5 Δ or more along a line.
-    pub fn check_reach(&self) -> Result<(), ParticleError> {
-        let reach = self.entry().reach * self.amplitude;
-        if reach >= 0.5 && self.entry().moves == Moves::All || reach >= 1.0 {
-            return Err(ParticleError::DisorderTooLarge { text: self.text.clone(), reach });
+    /// [`ParticleError::DisorderTooLarge`] if two particles of the lattice can meet.
+    pub fn check_reach(&self, lattice: &Lattice) -> Result<(), ParticleError> {
+        let movers = if self.entry().moves == Moves::CentreOnly { 1.0 } else { 2.0 };
+        type Norm = fn([f64; 3]) -> f64;
+        let (reach, norm): (f64, Norm) = match self.motion().reach {
+            Reach::Never => return Ok(()),
+            Reach::Ball(reach) => (reach, |r| (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt()),
+            Reach::PerAxis(reach) => (reach, |r| r.iter().fold(0.0, |most, x| most.max(x.abs()))),
+        };
+        let reach = reach * self.amplitude;
+        // What two particles can cross, as a ball that holds the box.
+        let radius = movers * reach * (lattice.dimension() as f64).sqrt();
+        let apart = lattice.separations_within(radius).into_iter().map(norm).fold(f64::INFINITY, f64::min);
+        if movers * reach < apart {
+            return Ok(());
         }
-        Ok(())
+        let text = self.text.clone();
+        Err(ParticleError::DisorderTooLarge { text, reach, lattice: lattice.id().to_owned(), apart })
+    }
+
+    /// # Errors
+    /// [`ParticleError::DisorderDimension`] if the lattice has too few dimensions for it.
+    pub fn check_dimension(&self, lattice: &Lattice) -> Result<(), ParticleError> {
+        let least = self.motion().least_dimension;
+        if lattice.dimension() >= least {
+            return Ok(());
+        }
+        Err(ParticleError::DisorderDimension {
+            text: self.text.clone(),
+            what: format!("needs at least {least} dimensions"),
+            lattice: lattice.id().to_owned(),
+            dimension: lattice.dimension(),
+        })
     }
 }
 
@@ -170,27 +250,5 @@ impl TryFrom<String> for Disorder {
     type Error = ParticleError;
     fn try_from(text: String) -> Result<Self, ParticleError> {
         Self::parse(&text)
-    }
-}
-
-/// A number in [0, 1) from a random word.
-fn unit_interval(word: u64) -> f64 {
-    (word >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
-}
-
-/// A direction uniform on the sphere of `dimension` dimensions: a sign, an angle, or Archimedes' cylinder.
-fn direction(dimension: usize, words: &SiteWords) -> [f64; 3] {
-    match dimension {
-        1 => [if words[0] >> 63 == 0 { 1.0 } else { -1.0 }, 0.0, 0.0],
-        2 => {
-            let (sine, cosine) = libm::sincos(std::f64::consts::TAU * unit_interval(words[0]));
-            [cosine, sine, 0.0]
-        }
-        _ => {
-            let (sine, cosine) = libm::sincos(std::f64::consts::TAU * unit_interval(words[0]));
-            let z = 2.0 * unit_interval(words[1]) - 1.0;
-            let rho = (1.0 - z * z).max(0.0).sqrt();
-            [rho * cosine, rho * sine, z]
-        }
     }
 }

@@ -3,7 +3,7 @@
 //! Seen from i, the whole lattice is displaced rigidly: the reading under which Fatehi & Manzari 2011 take d̃ out of the
 //! sum in Eq. (38).
 
-use super::{DisorderModel, Moves, direction};
+use super::{DisorderModel, Motion, Moves, direction, Reach};
 
 pub(super) fn model() -> DisorderModel {
     DisorderModel {
@@ -11,8 +11,17 @@ pub(super) fn model() -> DisorderModel {
         formula: "d_i = A Δ n, n uniform on the unit sphere; d_j = 0 for j ≠ i",
         citation: "fatehi-manzari-2011, Eq. (38)",
         moves: Moves::CentreOnly,
-        unit: direction,
-        reach: 1.0,
-        longest: [1.0; 3],
+        options: &[],
+        motion: |_| {
+            Ok(Motion {
+                unit: Box::new(|draw| {
+                    let [a, b, ..] = draw.own_words();
+                    direction::uniform(draw.dimension, [a, b])
+                }),
+                reach: Reach::Ball(1.0),
+                longest: [1.0; 3],
+                least_dimension: 1,
+            })
+        },
     }
 }
