@@ -156,7 +156,8 @@ impl Lattice {
         let mut heights: Vec<i64> = self.basis.iter().map(|b| b[last].rem_euclid(period)).collect();
         heights.sort_unstable();
         heights.dedup();
-        let height = (0..3).map(|row| cell[row] * self.vectors[row][last]).sum::<i64>() + self.basis[basis][last];
+        let height =
+            (0..3).map(|row| cell[row] * self.vectors[row][last]).sum::<i64>() + self.basis[basis][last];
         let within = heights.partition_point(|other| *other < height.rem_euclid(period));
         height.div_euclid(period) * heights.len() as i64 + within as i64
     }

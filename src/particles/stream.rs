@@ -76,7 +76,8 @@ impl SampleStream {
     /// Words of the sample's last stream.
     fn apart(&self, place: u128) -> SiteWords {
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
-        generator.set_stream(self.sample.wrapping_mul(STREAMS_PER_SAMPLE).wrapping_add(MOST_PARTICLES as u64));
+        generator
+            .set_stream(self.sample.wrapping_mul(STREAMS_PER_SAMPLE).wrapping_add(MOST_PARTICLES as u64));
         generator.set_word_pos(place * WORDS_PER_SITE);
         std::array::from_fn(|_| generator.next_u64())
     }

@@ -44,9 +44,9 @@ impl PointGroup {
     pub fn has_inversion(&self) -> bool {
         let minus = |a: usize, b: usize| if a == b { int(-1) } else { int(0) };
         let axes = 0..self.dimension;
-        self.operations.iter().any(|operation| {
-            axes.clone().all(|a| axes.clone().all(|b| operation[a][b] == minus(a, b)))
-        })
+        self.operations
+            .iter()
+            .any(|operation| axes.clone().all(|a| axes.clone().all(|b| operation[a][b] == minus(a, b))))
     }
 
     /// The mean of k^monomial over the group.
@@ -117,9 +117,10 @@ fn carries_sites_onto_sites(lattice: &Lattice, operation: &Operation, shift: &Si
 /// ```
 pub fn sites_are_equivalent(lattice: &Lattice) -> bool {
     let isometries = isometries(lattice);
-    lattice.basis().iter().all(|target| {
-        isometries.iter().any(|operation| carries_sites_onto_sites(lattice, operation, target))
-    })
+    lattice
+        .basis()
+        .iter()
+        .all(|target| isometries.iter().any(|operation| carries_sites_onto_sites(lattice, operation, target)))
 }
 
 /// All linear maps that carry the lattice's translations onto translations and preserve scalar products.

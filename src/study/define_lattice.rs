@@ -90,11 +90,18 @@ impl OwnLattice {
         }
         if self.basis.len() > MOST_PARTICLES {
             let count = self.basis.len();
-            return fault("basis", format!("{count} particles in a cell, more than the {MOST_PARTICLES} admitted"));
+            return fault(
+                "basis",
+                format!("{count} particles in a cell, more than the {MOST_PARTICLES} admitted"),
+            );
         }
         let Some(unit) = UNITS.iter().position(|unit| *unit == self.unit) else {
-            let hint = nearest(&self.unit, &UNITS).map(|u| format!(" (did you mean '{u}'?)")).unwrap_or_default();
-            return fault("unit", format!("there is no unit '{}'{hint}; units are {}", self.unit, UNITS.join(", ")));
+            let hint =
+                nearest(&self.unit, &UNITS).map(|u| format!(" (did you mean '{u}'?)")).unwrap_or_default();
+            return fault(
+                "unit",
+                format!("there is no unit '{}'{hint}; units are {}", self.unit, UNITS.join(", ")),
+            );
         };
         let squares = self.squares(d)?;
         let vectors = places("vectors", &self.vectors, d)?;
@@ -127,8 +134,11 @@ impl OwnLattice {
         for (index, place) in vectors.iter().enumerate() {
             k_vectors[index] = whole(("vectors", index), place)?;
         }
-        let k_basis: Vec<SiteIndex> =
-            basis.iter().enumerate().map(|(index, place)| whole(("basis", index), place)).collect::<Result<_, _>>()?;
+        let k_basis: Vec<SiteIndex> = basis
+            .iter()
+            .enumerate()
+            .map(|(index, place)| whole(("basis", index), place))
+            .collect::<Result<_, _>>()?;
         let scaled: [Rational; 3] =
             std::array::from_fn(|a| if a < d { &squares[a] * &steps[a] * &steps[a] } else { int(1) });
         let lattice = |squares: &[Rational; 3], vectors, basis: &[SiteIndex]| {

@@ -320,7 +320,8 @@ impl Scene {
         let at = |keys: String, message: String| text.error_at(&keys, message, None);
         let kernels = each(&raw.cases.kernels, "cases.kernels", at, kernel::by_id)?;
         let own_lattices = define_lattice::resolve(&raw.define.lattice, text)?;
-        let lattices = each(&raw.cases.lattices, "cases.lattices", at, |id| lattice_among(id, &own_lattices))?;
+        let lattices =
+            each(&raw.cases.lattices, "cases.lattices", at, |id| lattice_among(id, &own_lattices))?;
         let rules = each(&raw.cases.volume_rules, "cases.volume_rules", at, VolumeRule::by_id)?;
         for (list, key) in
             [(kernels.len(), "kernels"), (lattices.len(), "lattices"), (rules.len(), "volume_rules")]

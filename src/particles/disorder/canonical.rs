@@ -6,7 +6,7 @@
 //! n = (sin φ cos θ, sin φ sin θ, cos φ), ⟨n_z²⟩ = 1/2 and ⟨n_x²⟩ = ⟨n_y²⟩ = 1/4 in place of 1/3, so the axis matters; the
 //! paper does not say which it is. In 1-D and 2-D both readings are the same.
 
-use super::{DisorderModel, Motion, Moves, Options, direction, Reach};
+use super::{DisorderModel, Motion, Moves, Options, Reach, direction};
 
 pub(super) fn model() -> DisorderModel {
     DisorderModel {

@@ -3,7 +3,7 @@
 //! Seen from i, the whole lattice is displaced rigidly: the reading under which Fatehi & Manzari 2011 take d̃ out of the
 //! sum in Eq. (38).
 
-use super::{DisorderModel, Motion, Moves, direction, Reach};
+use super::{DisorderModel, Motion, Moves, Reach, direction};
 
 pub(super) fn model() -> DisorderModel {
     DisorderModel {

@@ -28,7 +28,9 @@ impl Options {
                 } else {
                     format!("it knows {}", known.join(", "))
                 };
-                return Err(format!("has an option '{key}' that model '{model}' does not know{hint}: {known}"));
+                return Err(format!(
+                    "has an option '{key}' that model '{model}' does not know{hint}: {known}"
+                ));
             }
             if options.insert(key.to_owned(), value.to_owned()).is_some() {
                 return Err(format!("has the option '{key}' twice"));

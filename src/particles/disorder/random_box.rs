@@ -14,9 +14,9 @@ pub(super) fn model() -> DisorderModel {
             Ok(Motion {
                 unit: Box::new(|draw| {
                     let (words, dimension) = (draw.own_words(), draw.dimension);
-                    std::array::from_fn(
-                        |a| if a < dimension { 0.5 * unit_interval(words[a]) - 0.25 } else { 0.0 },
-                    )
+                    std::array::from_fn(|a| {
+                        if a < dimension { 0.5 * unit_interval(words[a]) - 0.25 } else { 0.0 }
+                    })
                 }),
                 reach: Reach::PerAxis(0.25),
                 longest: [0.25, 0.25 * std::f64::consts::SQRT_2, 0.433_012_701_892_219_4],

@@ -9,7 +9,7 @@
 //! Neighbours count as free to meet once 2A is their distance, whatever λ is.
 
 use super::draw::unit_interval;
-use super::{DisorderModel, Draw, Motion, Moves, Options, direction, Reach};
+use super::{DisorderModel, Draw, Motion, Moves, Options, Reach, direction};
 use std::f64::consts::TAU;
 
 pub(super) fn model() -> DisorderModel {
