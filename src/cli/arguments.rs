@@ -27,6 +27,8 @@ pub(super) enum Command {
     Sums(SumsArguments),
     /// Print the JSON Schema of scenes or reports
     Schema(SchemaArguments),
+    /// Audit a kernel: normalisation, smoothness, sign, inflection point, what h means elsewhere
+    Kernel(KernelArguments),
     /// List what can be named in a scene
     List(ListArguments),
 }
@@ -131,6 +133,16 @@ pub(super) struct SumsArguments {
     /// Memory that the sites may take
     #[arg(long, default_value_t = 2048)]
     pub(super) memory_mib: u64,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct KernelArguments {
+    /// An id of the catalogue, or a TOML or JSON file with `pieces`
+    #[arg(value_name = "NAME|FILE")]
+    pub(super) kernel: String,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,

@@ -5,6 +5,7 @@ mod catalogue;
 mod diagnostic;
 mod execute;
 mod exit;
+mod kernel;
 mod progress;
 mod sums;
 mod terminal;
@@ -32,6 +33,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Plan(plan) => execute::plan(plan),
         Command::Sums(arguments) => sums::sums(arguments),
         Command::Schema(schema) => catalogue::schema(schema.of),
+        Command::Kernel(named) => kernel::audit(named),
         Command::List(list) => catalogue::list(list),
     };
     match done {

@@ -14,6 +14,7 @@
 mod coefficient;
 mod enclosure;
 mod error;
+mod exponential;
 mod float_bounds;
 mod multi_index;
 mod multivariate;
@@ -22,6 +23,7 @@ mod piecewise;
 mod polynomial;
 mod radical;
 mod rational;
+mod roots;
 
 pub use coefficient::{Coefficient, Truth};
 pub use enclosure::Enclosure;
@@ -36,3 +38,4 @@ pub use rational::{
     Rational, int, parse_rational, ratio, rational_from_decimal, rational_text, rational_to_f64,
     serde_rational,
 };
+pub use roots::Stretch;

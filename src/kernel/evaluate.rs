@@ -4,8 +4,9 @@
 //! the factor x^{-n} it has in G_k is split off exactly, so that a kernel keeps its relative accuracy where it joins zero
 //! and near the origin. No fused operations; the same bits on every machine.
 
-use super::Kernel;
-use crate::exact::{Polynomial, Rational, int, rational_to_f64};
+use super::radial::radial_pieces;
+use super::{Kernel, Profile};
+use crate::exact::{Piecewise, Polynomial, Rational, int, rational_to_f64};
 use num_traits::Float;
 
 /// Lanes of a block.
@@ -21,8 +22,18 @@ pub struct RadialValues<T> {
 /// A kernel made ready for evaluation in T = f32 or f64, in one dimension count, up to G_`order`.
 #[derive(Debug, Clone)]
 pub struct Evaluator<T> {
-    pieces: Vec<Piece<T>>,
+    shape: Shape<T>,
     order: usize,
+}
+
+#[derive(Debug, Clone)]
+enum Shape<T> {
+    Pieces(Vec<Piece<T>>),
+    /// G_k = factor_k · exp(−rate · x²) for x < 1.
+    Gaussian {
+        rate: f64,
+        factors: Vec<T>,
+    },
 }
 
 #[derive(Debug, Clone)]
@@ -37,47 +48,41 @@ impl<T: Float> Evaluator<T> {
     /// Prepares G_0 … G_`order` in `dimension` dimensions.
     pub fn new(kernel: &Kernel, dimension: usize, order: usize) -> Self {
         let kappa = kernel.support_over_h();
-        let sigma = kernel.normalisation_in_support(dimension).enclose(128).midpoint_f64();
-        let by_function: Vec<_> = (0..=order).map(|k| kernel.radial_function(k)).collect();
-        let pieces = (0..by_function[0].len())
-            .map(|index| {
-                let edges = &by_function[0][index];
-                let functions = by_function
-                    .iter()
-                    .enumerate()
-                    .map(|(k, pieces)| {
-                        let piece = &pieces[index];
-                        // q = κ (x_right − s): numerator in s; G_k in units of R carries κ^{2k} and κ^{-n} from q^{-n}.
-                        let q_of_s = Polynomial::new(vec![piece.to.clone(), -kappa.clone()]);
-                        let in_s = piece
-                            .numerator
-                            .compose(&q_of_s)
-                            .scale(&power(kappa, 2 * k as i64 - piece.denominator_power as i64));
-                        let coefficients = in_s
-                            .coefficients()
-                            .iter()
-                            .rev()
-                            .map(|c| cast(rational_to_f64(c) * sigma))
-                            .collect();
-                        (coefficients, piece.denominator_power)
-                    })
-                    .collect();
-                Piece {
-                    from: cast(rational_to_f64(&(&edges.from / kappa))),
-                    to: cast(rational_to_f64(&(&edges.to / kappa))),
-                    functions,
-                }
-            })
-            .collect();
-        Self { pieces, order }
+        // W = R^{-D} F(x), F = σ_D κ^D w(κ x).
+        let sigma = kernel
+            .enclose_normalisation(dimension, 128)
+            .scale(&power(kappa, dimension as i64), 128)
+            .midpoint_f64();
+        let shape = match kernel.profile() {
+            Profile::Polynomial(profile) => Shape::Pieces(polynomial_pieces(profile, sigma, order)),
+            Profile::Gaussian { cut } => {
+                let rate = rational_to_f64(&(cut * cut));
+                let factor = |k: usize| cast(sigma * (0..k).fold(1.0, |product, _| product * (-2.0 * rate)));
+                Shape::Gaussian { rate, factors: (0..=order).map(factor).collect() }
+            }
+        };
+        Self { shape, order }
     }
 
     /// G_0 … G_order at x = r/R in each lane. Beyond the support they are zero. At x = 0, G_k is its limit where that
     /// is finite and 0 where it is not: the moments it belongs to vanish there by antisymmetry.
     pub fn evaluate(&self, x: &[T; LANES]) -> RadialValues<T> {
         let mut values = RadialValues { g: [[T::zero(); LANES]; 3] };
+        let pieces = match &self.shape {
+            Shape::Pieces(pieces) => pieces,
+            Shape::Gaussian { rate, factors } => {
+                for lane in (0..LANES).filter(|lane| x[*lane] < T::one()) {
+                    let x = x[lane].to_f64().unwrap_or(f64::NAN);
+                    let exponential: T = cast(libm::exp(-rate * x * x));
+                    for (k, factor) in factors.iter().enumerate() {
+                        values.g[k][lane] = *factor * exponential;
+                    }
+                }
+                return values;
+            }
+        };
         let inverse = x.map(|x| if x > T::zero() { T::one() / x } else { T::zero() });
-        for piece in &self.pieces {
+        for piece in pieces {
             let inside = x.map(|x| x >= piece.from && x < piece.to);
             if !inside.contains(&true) {
                 continue;
@@ -109,6 +114,37 @@ impl<T: Float> Evaluator<T> {
     pub fn order(&self) -> usize {
         self.order
     }
+}
+
+fn polynomial_pieces<T: Float>(profile: &Piecewise, sigma: f64, order: usize) -> Vec<Piece<T>> {
+    let kappa = profile.support();
+    let by_function: Vec<_> = (0..=order).map(|k| radial_pieces(profile, k)).collect();
+    (0..by_function[0].len())
+        .map(|index| {
+            let edges = &by_function[0][index];
+            let functions = by_function
+                .iter()
+                .enumerate()
+                .map(|(k, pieces)| {
+                    let piece = &pieces[index];
+                    // q = κ (x_right − s): numerator in s; G_k in units of R carries κ^{2k} and κ^{-n} from q^{-n}.
+                    let q_of_s = Polynomial::new(vec![piece.to.clone(), -kappa.clone()]);
+                    let in_s = piece
+                        .numerator
+                        .compose(&q_of_s)
+                        .scale(&power(kappa, 2 * k as i64 - piece.denominator_power as i64));
+                    let coefficients =
+                        in_s.coefficients().iter().rev().map(|c| cast(rational_to_f64(c) * sigma)).collect();
+                    (coefficients, piece.denominator_power)
+                })
+                .collect();
+            Piece {
+                from: cast(rational_to_f64(&(&edges.from / kappa))),
+                to: cast(rational_to_f64(&(&edges.to / kappa))),
+                functions,
+            }
+        })
+        .collect()
 }
 
 fn cast<T: Float>(value: f64) -> T {

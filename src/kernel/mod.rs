@@ -1,4 +1,4 @@
-//! Radial kernels as exact piecewise polynomials.
+//! Radial kernels: exact piecewise polynomials, and the Gaussian, cut off.
 //!
 //! W(r, h) = σ_D h^{-D} w(q), q = r/h. A kernel is its profile w with a citation; everything else (σ_D, β, the
 //! behaviour at the origin and at each knot, the derivatives, the continuum moments) is computed from w. This is the
@@ -6,31 +6,50 @@
 //!
 //! A new family is one file beside `wendland.rs` and `bspline.rs` and one line in [`catalogue`].
 
+mod audit;
 mod bspline;
 mod continuum;
+mod convention;
+mod definition;
 mod error;
 mod evaluate;
+mod gaussian;
 mod radial;
 mod wendland;
 
-pub use bspline::{cubic_spline, quintic_spline};
+pub use audit::{Audit, ConventionAudit, Inflection, NormalisationAudit, PrintedAudit};
+pub use bspline::{cubic_spline, quartic_spline, quintic_spline};
 pub use continuum::{SummandTerm, sphere_monomial};
+pub use convention::{Convention, conventions};
+pub use definition::{KernelDefinition, PieceDefinition};
 pub use error::KernelError;
 pub use evaluate::{Evaluator, RadialValues};
-pub use radial::{Jump, Kernel, RadialPiece};
-pub use wendland::{wendland_c2, wendland_c4};
+pub use gaussian::gaussian;
+pub use radial::{Jump, Kernel, Printed, Profile, RadialFunction, RadialPiece};
+pub use wendland::{wendland_c2, wendland_c2_1d, wendland_c4, wendland_c4_1d, wendland_c6, wendland_c6_1d};
 
 use crate::names::nearest;
 
 /// The kernels that can be named in a scene or on the command line.
 pub fn catalogue() -> Vec<Kernel> {
-    vec![wendland_c2(), wendland_c4(), cubic_spline(), quintic_spline()]
+    vec![
+        wendland_c2(),
+        wendland_c4(),
+        wendland_c6(),
+        wendland_c2_1d(),
+        wendland_c4_1d(),
+        wendland_c6_1d(),
+        cubic_spline(),
+        quartic_spline(),
+        quintic_spline(),
+        gaussian(),
+    ]
 }
 
-/// The kernel of the catalogue with this id.
+/// The kernel of the catalogue with this id; `gaussian:cut=2.5` cuts the Gaussian at 2.5 h.
 ///
 /// # Errors
-/// [`KernelError::Unknown`] with the nearest known id.
+/// [`KernelError::Unknown`] with the nearest known id, [`KernelError::Cut`].
 ///
 /// # Examples
 /// ```
@@ -38,7 +57,18 @@ pub fn catalogue() -> Vec<Kernel> {
 /// assert_eq!(kernel.beta(), 3);
 /// ```
 pub fn by_id(id: &str) -> Result<Kernel, KernelError> {
-    let known = catalogue();
+    by_id_among(id, &[])
+}
+
+/// The kernel with this id, of the catalogue or of one's own.
+///
+/// # Errors
+/// As [`by_id`].
+pub fn by_id_among(id: &str, own: &[Kernel]) -> Result<Kernel, KernelError> {
+    if let Some(parameters) = id.strip_prefix("gaussian:") {
+        return gaussian::with_parameters(parameters);
+    }
+    let known: Vec<Kernel> = own.iter().cloned().chain(catalogue()).collect();
     let ids: Vec<&str> = known.iter().map(Kernel::id).collect();
     match ids.iter().position(|candidate| *candidate == id) {
         Some(index) => Ok(known[index].clone()),

@@ -1,6 +1,6 @@
 //! Rungs of the regular ladder: exact lattice sums at one R/Δ and its offsets.
 
-use crate::exact::{Enclosure, Rational, int};
+use crate::exact::{Coefficient, Enclosure, Rational, int};
 use crate::kernel::Kernel;
 use crate::particles::{Lattice, PointGroup, VolumeRule};
 use crate::sums::{LatticeSums, Moment, Reduction, SumError};
@@ -69,10 +69,12 @@ pub fn regular_rung(spec: &RegularSpec, group: &PointGroup) -> Result<RegularRun
     let reductions: Vec<Reduction> =
         spec.moments.iter().map(|moment| Reduction::of(*moment, &spec.lattice, group)).collect();
     let free: Vec<_> = reductions.iter().map(Reduction::free).collect();
-    let limits: Vec<Vec<Rational>> = free
+    // As accurate as the last attempt needs it: exact limits are rounded to each attempt's bits below.
+    let finest = BITS[BITS.len() - 1] + 32;
+    let limits: Vec<Vec<Coefficient>> = free
         .iter()
         .map(|components| {
-            components.iter().map(|c| spec.kernel.continuum_limit(dimension, &c.terms)).collect()
+            components.iter().map(|c| spec.kernel.continuum_limit(dimension, &c.terms, finest)).collect()
         })
         .collect();
     let mut rung =
@@ -93,7 +95,7 @@ pub fn regular_rung(spec: &RegularSpec, group: &PointGroup) -> Result<RegularRun
                     for ((sum, limit), component) in enclosed.iter().zip(limits).zip(components) {
                         let mut scaled = sum * &Enclosure::exact(&scale, bits + 32);
                         if subtract {
-                            scaled = &scaled - &Enclosure::exact(limit, bits + 32);
+                            scaled = &scaled - &limit.enclose(bits + 32).round(bits + 32);
                         }
                         let square = &scaled * &scaled;
                         total = &total + &(&square * &Enclosure::from_i64(component.multiplicity as i64));

@@ -4,6 +4,7 @@ use super::outcome::{CaseId, LadderFit, Rung, Varies};
 use super::plan::{LadderPlan, Plan, Task};
 use super::run::TaskResult;
 use crate::claim::Quantity;
+use crate::kernel::Kernel;
 use crate::measured::summarise;
 use crate::measured::window::{LadderPoint, WindowOptions, power_law};
 use crate::sums::Moment;
@@ -39,7 +40,11 @@ pub(super) fn fit_ladder(
         .collect();
     let fit = power_law(&points, &WindowOptions::default()).map_err(|error| error.to_string());
     let id = format!("{}/{}/{}/{}", moment.name(), quantity.id(), ladder.case.path(), ladder.varies.id());
-    let held = held(&ladder.case, ladder.varies, &rungs);
+    let mut held = held(&ladder.case, ladder.varies, &rungs);
+    if quantity == Quantity::RegularDeviation {
+        let kernel = ladder.rungs.iter().flatten().next().map(|task| plan.tasks[*task].kernel());
+        held.extend(kernel.and_then(Kernel::remark).map(|remark| ("kernel".to_owned(), remark)));
+    }
     Some(LadderFit {
         id,
         case: ladder.case.clone(),

@@ -20,6 +20,6 @@ pub use event::Event;
 pub use outcome::{CaseId, JudgedCase, LadderFit, MeasuredColumn, Outcome, RolledClaim, Rung, Varies};
 pub use plan::{Plan, Task};
 pub use run::{RunOptions, Shard, run};
-pub use scene::{RawScene, Scene};
+pub use scene::{DefineTable, RawScene, Scene, read_kernel};
 pub use source::{SceneError, SceneText};
 pub use store::{BlockStore, write_whole};

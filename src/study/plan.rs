@@ -199,6 +199,14 @@ impl Plan {
 }
 
 impl Task {
+    /// The kernel it sums.
+    pub fn kernel(&self) -> &Kernel {
+        match self {
+            Self::Regular(spec) => &spec.kernel,
+            Self::Samples { spec, .. } => &spec.kernel,
+        }
+    }
+
     /// For people.
     pub fn label(&self) -> String {
         match self {
@@ -248,16 +256,11 @@ impl Task {
             supports: Vec<String>,
             disorder: Option<(String, f64, u64)>,
         }
-        let profile = |kernel: &Kernel| {
-            let profile = kernel.profile();
-            let pieces = profile.pieces().iter().zip(&profile.knots()[1..]);
-            pieces
-                .map(|(p, knot)| (rational_text(knot), p.coefficients().iter().map(rational_text).collect()))
-                .collect()
-        };
         let (kernel, lattice, rule, moments) = match self {
-            Self::Regular(spec) => (profile(&spec.kernel), &spec.lattice, spec.rule, &spec.moments),
-            Self::Samples { spec, .. } => (profile(&spec.kernel), &spec.lattice, spec.rule, &spec.moments),
+            Self::Regular(spec) => (spec.kernel.canonical_profile(), &spec.lattice, spec.rule, &spec.moments),
+            Self::Samples { spec, .. } => {
+                (spec.kernel.canonical_profile(), &spec.lattice, spec.rule, &spec.moments)
+            }
         };
         let (supports, disorder) = match self {
             Self::Regular(spec) => (spec.supports.iter().map(rational_text).collect(), None),
@@ -383,6 +386,13 @@ fn omissions(scene: &Scene, groups: &[PointGroup]) -> Vec<Omission> {
             why: "the scene does not name them".into(),
             saved: None,
         });
+    }
+    for kernel in &scene.kernels {
+        omissions.extend(kernel.remark().map(|why| Omission {
+            what: format!("{} beyond R", kernel.id()),
+            why,
+            saved: None,
+        }));
     }
     if !scene.disorders.is_empty() && scene.claims.iter().all(needs_regular) {
         omissions.push(Omission {

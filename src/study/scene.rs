@@ -4,7 +4,7 @@ use super::define_lattice::{self, OwnLattice};
 use super::source::{SceneError, SceneText};
 use crate::claim::{self, BetaExponent, Claim, Powers, Quantity, Statement, Verdict};
 use crate::exact::{Rational, int, ratio, rational_from_decimal, rational_to_f64};
-use crate::kernel::{self, Kernel};
+use crate::kernel::{Kernel, KernelDefinition, by_id_among};
 use crate::measured::neighbourhood_radius;
 use crate::particles::{Disorder, Lattice, Moves, VolumeRule, lattice_among};
 use crate::sums::{Moment, nearest_distance};
@@ -49,6 +49,22 @@ pub struct RawScene {
     pub expect: BTreeMap<String, Verdict>,
 }
 
+/// Reads a kernel from a file of its own.
+///
+/// # Errors
+/// [`SceneError`] with line and column where there is one.
+pub fn read_kernel(path: &Path) -> Result<Kernel, SceneError> {
+    let nowhere = SceneText { path: path.to_owned(), text: String::new() };
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| nowhere.error(format!("cannot be read as a kernel ({error})")))?;
+    let text = SceneText { path: path.to_owned(), text };
+    let mut definition: KernelDefinition = parse(&text)?;
+    if definition.id.is_empty() {
+        definition.id = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("kernel").into();
+    }
+    definition.build().map_err(|error| text.error_at(&error.field(), error.to_string(), None))
+}
+
 /// `[study]`
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -71,7 +87,9 @@ impl Default for StudyTable {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DefineTable {
-    /// Lattices.
+    /// `[[define.kernel]]`
+    pub kernel: Vec<KernelDefinition>,
+    /// `[[define.lattice]]`
     pub lattice: Vec<OwnLattice>,
 }
 
@@ -292,24 +310,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::read`].
     pub fn from_text(text: &SceneText, name: &str, quick: bool) -> Result<Self, SceneError> {
-        let raw: RawScene = if text.is_json() {
-            serde_json::from_str(&text.text).map_err(|error| {
-                let line_start: usize =
-                    text.text.split_inclusive('\n').take(error.line().max(1) - 1).map(str::len).sum();
-                let at = (line_start + error.column().saturating_sub(1)).min(text.text.len());
-                let message = error.to_string();
-                let message = message.split(" at line ").next().unwrap_or_default().to_owned();
-                SceneError { scene: text.clone(), span: Some(at..at), message, help: None }
-            })?
-        } else {
-            toml::from_str(&text.text).map_err(|error| SceneError {
-                scene: text.clone(),
-                span: error.span(),
-                message: error.message().to_owned(),
-                help: None,
-            })?
-        };
-        Self::resolve(raw, text, name, quick)
+        Self::resolve(parse(text)?, text, name, quick)
     }
 
     fn resolve(raw: RawScene, text: &SceneText, name: &str, quick: bool) -> Result<Self, SceneError> {
@@ -318,7 +319,16 @@ impl Scene {
             return Err(text.error_at("study.kind", message, Some("write kind = \"moment-orders\"")));
         }
         let at = |keys: String, message: String| text.error_at(&keys, message, None);
-        let kernels = each(&raw.cases.kernels, "cases.kernels", at, kernel::by_id)?;
+        let mut own: Vec<Kernel> = Vec::new();
+        for (index, definition) in raw.define.kernel.iter().enumerate() {
+            let place = |field: &str| format!("define.kernel.{index}.{field}");
+            let kernel = definition.build().map_err(|error| at(place(&error.field()), error.to_string()))?;
+            if own.iter().any(|known| known.id() == kernel.id()) {
+                return Err(at(place("id"), format!("defines the kernel '{}' twice", kernel.id())));
+            }
+            own.push(kernel);
+        }
+        let kernels = each(&raw.cases.kernels, "cases.kernels", at, |id| by_id_among(id, &own))?;
         let own_lattices = define_lattice::resolve(&raw.define.lattice, text)?;
         let lattices =
             each(&raw.cases.lattices, "cases.lattices", at, |id| lattice_among(id, &own_lattices))?;
@@ -458,6 +468,27 @@ impl Scene {
         let span = kernel.support_over_h();
         let count = (span * int(per_spacing)).ceil().to_integer().to_i64().unwrap_or(per_spacing);
         rungs.iter().map(|rung| (0..count).map(|k| int(*rung) + ratio(k, count) * span).collect()).collect()
+    }
+}
+
+/// Reads TOML or JSON, with the place of what does not fit.
+fn parse<T: serde::de::DeserializeOwned>(text: &SceneText) -> Result<T, SceneError> {
+    if text.is_json() {
+        serde_json::from_str(&text.text).map_err(|error| {
+            let line_start: usize =
+                text.text.split_inclusive('\n').take(error.line().max(1) - 1).map(str::len).sum();
+            let at = (line_start + error.column().saturating_sub(1)).min(text.text.len());
+            let message = error.to_string();
+            let message = message.split(" at line ").next().unwrap_or_default().to_owned();
+            SceneError { scene: text.clone(), span: Some(at..at), message, help: None }
+        })
+    } else {
+        toml::from_str(&text.text).map_err(|error| SceneError {
+            scene: text.clone(),
+            span: error.span(),
+            message: error.message().to_owned(),
+            help: None,
+        })
     }
 }
 

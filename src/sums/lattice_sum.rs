@@ -5,6 +5,9 @@
 //! [`LatticeSums::enclose`] gives the same number as an enclosure, in whole-number arithmetic with a fixed count of
 //! fractional bits, fast enough for ladders that reach hundreds of spacings.
 //!
+//! A kernel that is not polynomial has no closed form: [`LatticeSums::exact`] then answers with an enclosure, and the type
+//! of the number says so.
+//!
 //! Lengths are in units of Δ. Particle i itself is included.
 
 use super::moment::Component;
@@ -12,15 +15,18 @@ use super::roots::Roots;
 use super::shells::{Shells, split_square};
 use super::{Moment, SumError};
 use crate::exact::{Coefficient, Enclosure, MultiIndex, Radical, Rational, int, rational_to_f64};
-use crate::kernel::{Kernel, RadialPiece};
+use crate::kernel::{Kernel, RadialFunction, RadialPiece};
 use crate::particles::{Lattice, VolumeRule, sites_are_equivalent};
 use num_bigint::{BigInt, BigUint};
-use num_integer::Integer;
+use num_integer::{Integer, Roots as _};
 use num_traits::{One, Signed, ToPrimitive, Zero};
 use std::collections::BTreeMap;
 
 /// Bytes a site takes while shells are gathered (hash entry and sums), for the estimate before allocating.
 const BYTES_PER_SITE: f64 = 64.0;
+
+/// Fractional bits of what [`LatticeSums::exact`] encloses.
+const ENCLOSED_BITS: u32 = 256;
 
 /// The sums of one kernel over one lattice, ready for any R/Δ up to a largest one.
 #[derive(Debug, Clone)]
@@ -103,7 +109,7 @@ impl LatticeSums {
     }
 
     /// The closed form of one component, in units of Δ: a [`Radical`] for constant volumes, a quotient of two for
-    /// V = 1/ΣW.
+    /// V = 1/ΣW. For a kernel that is not polynomial, an enclosure.
     ///
     /// # Errors
     /// [`SumError::NoVolume`] if ΣW vanishes under the number-density rule, [`SumError::UnequalVolumes`].
@@ -113,12 +119,17 @@ impl LatticeSums {
         component: &Component,
         rule: VolumeRule,
     ) -> Result<Coefficient, SumError> {
-        let numerator = self.bare(support_over_dx, component);
+        let Some(numerator) = self.bare(support_over_dx, component) else {
+            let components = std::slice::from_ref(component);
+            let enclosed = self.enclose(support_over_dx, components, rule, ENCLOSED_BITS)?;
+            return Ok(enclosed.into_iter().next().map_or_else(Coefficient::zero, Coefficient::from));
+        };
         match rule {
             VolumeRule::Constant => Ok(Coefficient::from(&numerator * &self.lattice.particle_volume())),
             VolumeRule::NumberDensity => {
                 self.check_equal_volumes()?;
-                let sum_w = self.bare(support_over_dx, &sum_w_component(self.lattice.dimension()));
+                let sum_w = sum_w_component(self.lattice.dimension());
+                let sum_w = self.bare(support_over_dx, &sum_w).unwrap_or_default();
                 Coefficient::quotient(numerator, sum_w)
                     .map_err(|_| SumError::NoVolume { support_over_dx: rational_to_f64(support_over_dx) })
             }
@@ -160,8 +171,9 @@ impl LatticeSums {
         support_over_dx / self.kernel.support_over_h()
     }
 
-    /// The sum without ω, as a radical.
-    fn bare(&self, support_over_dx: &Rational, component: &Component) -> Radical {
+    /// The sum without ω, as a radical; `None` for a kernel that is not polynomial.
+    fn bare(&self, support_over_dx: &Rational, component: &Component) -> Option<Radical> {
+        let sigma = self.kernel.normalisation(self.lattice.dimension())?;
         let d = self.lattice.dimension() as u32;
         let h = self.h(support_over_dx);
         let (shells, _) = self.shells.within(support_over_dx);
@@ -173,7 +185,9 @@ impl LatticeSums {
         for term in &component.terms {
             let weight = int(term.coefficient) * monomial_rational(&self.lattice, &term.monomial)
                 / power(&h, d + 2 * term.radial as u32);
-            let pieces = self.kernel.radial_function(term.radial);
+            let RadialFunction::Pieces(pieces) = self.kernel.radial_function(term.radial) else {
+                return None;
+            };
             if term.monomial.order() == 0 {
                 rational += &weight * value_at_origin(&pieces[0]);
             }
@@ -206,7 +220,7 @@ impl LatticeSums {
             .first()
             .map(|term| monomial_root(&self.lattice, &term.monomial))
             .unwrap_or_default();
-        &(&sum * &root) * &self.kernel.normalisation(self.lattice.dimension())
+        Some(&(&sum * &root) * &sigma)
     }
 }
 
@@ -226,6 +240,7 @@ impl<'a> RadialTable<'a> {
         let levels = &sums.shells.levels()[..shells];
         let unit = sums.shells.unit();
         let (outside, inside) = split_square_of(unit);
+        let mut exponentials = None;
         let needed = |k: usize| components.iter().flat_map(|c| &c.terms).any(|term| term.radial == k);
         let mut known = Roots::new(bits);
         let roots: Vec<BigInt> = levels.iter().map(|(level, _)| known.of(level * inside)).collect();
@@ -234,12 +249,16 @@ impl<'a> RadialTable<'a> {
             if !needed(k) {
                 return Vec::new();
             }
-            let pieces: Vec<FixedPiece> = sums
-                .kernel
-                .radial_function(k)
-                .iter()
-                .map(|piece| FixedPiece::new(piece, &step, &(&outside / &h)))
-                .collect();
+            let pieces = match sums.kernel.radial_function(k) {
+                RadialFunction::Pieces(pieces) => pieces,
+                RadialFunction::Gaussian { factor } => {
+                    let table = exponentials.get_or_insert_with(|| exponentials_at(levels, &step, bits));
+                    return table.iter().map(|v| (v * factor, 2 * factor.unsigned_abs())).collect();
+                }
+            };
+            let origin = fixed(&value_at_origin(&pieces[0]), bits);
+            let pieces: Vec<FixedPiece> =
+                pieces.iter().map(|piece| FixedPiece::new(piece, &step, &(&outside / &h))).collect();
             let mut values = Vec::with_capacity(levels.len());
             let mut current = 0;
             for ((level, _), root) in levels.iter().zip(&roots) {
@@ -248,7 +267,7 @@ impl<'a> RadialTable<'a> {
                     current += 1;
                 }
                 values.push(if *level == 0 {
-                    (fixed(&value_at_origin(&sums.kernel.radial_function(k)[0]), bits), 1)
+                    (origin.clone(), 1)
                 } else {
                     pieces[current].evaluate(*level, root, bits)
                 });
@@ -279,8 +298,9 @@ impl<'a> RadialTable<'a> {
         });
         let root =
             component.terms.first().map(|term| monomial_root(lattice, &term.monomial)).unwrap_or_default();
-        let sigma = self.sums.kernel.normalisation(dimension);
-        (&total * &(&root * &sigma).enclose(guard)).round(guard + 64)
+        let sigma = self.sums.kernel.enclose_normalisation(dimension, guard);
+        let unit = if root == Radical::one() { sigma } else { &root.enclose(guard) * &sigma };
+        (&total * &unit).round(guard + 64)
     }
 }
 
@@ -370,6 +390,23 @@ impl FixedPolynomial {
             if self.shift == 0 { self.denominator.clone() } else { &self.denominator * x.pow(self.shift) };
         (numerator << bits).div_floor(&denominator)
     }
+}
+
+/// 2^bits · exp(−level · step) at each shell, off by less than 2: exp(−low) · exp(−high) from two short tables, with eight
+/// bits more than asked for.
+fn exponentials_at(levels: &[(u64, u64)], step: &Rational, bits: u32) -> Vec<BigInt> {
+    let last = levels.last().map_or(0, |(level, _)| *level);
+    let block = last.sqrt() + 1;
+    let working = bits + 8;
+    let table = |unit: &Rational, count: u64| -> Vec<BigInt> {
+        let exponent = |n: u64| unit * Rational::from_integer(n.into());
+        let value = |n| fixed(&Enclosure::exp_of_negative(&exponent(n), working).midpoint(), working);
+        (0..count).map(value).collect()
+    };
+    let low = table(step, block);
+    let high = table(&(step * Rational::from_integer(block.into())), last / block + 1);
+    let product = |level: u64| &low[(level % block) as usize] * &high[(level / block) as usize];
+    levels.iter().map(|(level, _)| product(*level) >> (working + 8)).collect()
 }
 
 fn fixed(value: &Rational, bits: u32) -> BigInt {
