@@ -182,7 +182,7 @@ fn what_is_left_of_the_third_rank_on_hcp() {
 fn exact_sums_agree_with_sums_over_positions() {
     for id in ["staggered", "bcc", "fcc", "hcp"] {
         let (lattice, kernel, support) = (lattice(id), wendland(), ratio(5, 2));
-        let (d, radius) = (lattice.dimension(), 2.5);
+        let (d, radius) = (lattice.dimension(), 2.5_f64);
         let moments = ["sum_w", "sum_rrw", "sum_rrrw"].map(|m| Moment::by_name(m).unwrap());
         let sums = LatticeSums::new(&kernel, &lattice, &support, &moments, 64).unwrap();
         let volume = lattice.particle_volume().enclose(64).midpoint_f64();
