@@ -101,7 +101,7 @@ pub fn run(scene: &Scene, plan: &Plan, options: &RunOptions<'_>) -> Result<Optio
     if taken < tasks * blocks {
         outcome.omissions.push(Omission {
             what: "samples past the wanted precision".into(),
-            why: format!("every root mean square had reached a relative standard error of {precision}"),
+            why: format!("sampling stopped where every root mean square had reached a relative standard error of {precision}"),
             saved: Some(format!(
                 "{} of {} samples",
                 (tasks * blocks - taken) * scene.raw.samples.block,
