@@ -279,7 +279,7 @@ pub struct ClosestPair {
 ///
 /// # Examples
 /// ```
-/// use remainder::particles::cloud::{Cloud, CloudError, Support};
+/// use remainder::particles::{Cloud, CloudError, Support};
 ///
 /// let positions = vec![[0.125, 0.0, 0.0], [0.375, 0.0, 0.0], [0.875, 0.0, 0.0]];
 /// let cloud = Cloud::new(1, positions, vec![0.25, 0.25, 0.5], Support::Uniform(0.5))?

@@ -54,8 +54,8 @@ pub struct Neighbour {
 ///
 /// # Examples
 /// ```
-/// use remainder::particles::cloud::{Cloud, CloudError, Support};
-/// use remainder::particles::neighbours::Neighbours;
+/// use remainder::particles::{Cloud, CloudError, Support};
+/// use remainder::particles::Neighbours;
 ///
 /// let cloud = Cloud::new(1, vec![[0.0; 3], [0.25, 0.0, 0.0]], vec![0.5; 2], Support::Uniform(1.125))?
 ///     .with_periods([Some(1.0), None, None])?;
