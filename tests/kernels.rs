@@ -145,7 +145,7 @@ fn gaussian_sums_hold_a_direct_rational_sum_and_the_floating_point_one() {
     let gaussian = kernel::by_id("gaussian:cut=2.5").unwrap();
     assert_eq!((gaussian.id(), gaussian.support_over_h()), ("gaussian:cut=2.5", &ratio(5, 2)));
     let support = ratio(17, 4);
-    for name in ["line", "square", "cubic"] {
+    for name in ["line", "square", "simple-cubic"] {
         let lattice = lattice_by_id(name).unwrap();
         let d = lattice.dimension();
         let moments = [Moment::default(), Moment::b_inverse(), Moment::laplacian(2).unwrap()];
@@ -307,7 +307,7 @@ fn a_scene_defines_kernels_and_its_errors_have_line_and_column() {
     assert!(unknown.contains("scene.toml:1:") && unknown.contains("did you mean 'mine'"), "{unknown}");
     let apart = "[[define.kernel]]\nid = \"mine\"\npieces = [\n  { to = \"1\", coefficients = [\"1\"] },\n  { to = \"2\", coefficients = [\"1/2\"] },\n]\n";
     let apart = scene(apart, "\"mine\"").unwrap_err();
-    assert!(apart.contains("scene.toml:6:31") && apart.contains("do not meet at q = 1"), "{apart}");
+    assert!(apart.contains("scene.toml:6:30") && apart.contains("do not meet at q = 1"), "{apart}");
 }
 
 #[test]

@@ -37,6 +37,8 @@ fn bare(value: &Value) -> Value {
             .collect::<serde_json::Map<_, _>>()
             .into(),
         Value::Array(list) => list.iter().map(bare).collect::<Vec<_>>().into(),
+        // 12 and 12.0 are one number.
+        Value::Number(number) => json!(number.as_f64()),
         other => other.clone(),
     }
 }

@@ -127,7 +127,7 @@ fn closed_forms_are_rationals_radicals_or_quotients() {
 fn wrong_input_says_what_and_exits_with_2() {
     let good = ["--kernel", "wendland-c2", "--lattice", "square", "--support-over-dx", "2.5"];
     for (at, bad, words) in [
-        (1, "wendland-c3", "did you mean 'wendland-c2'"),
+        (1, "wendland-c3", "did you mean 'wendland-c"),
         (3, "sqare", "did you mean 'square'"),
         (5, "1", "without neighbours"),
         (5, "-2.5", "positive"),

@@ -57,7 +57,7 @@ fn text(audit: &Audit) -> String {
                 format!("       {} prints {}: right", printed.source, printed.printed)
             } else {
                 format!(
-                    "       {} prints {}: WRONG, right is {} (as printed W integrates to {:.6})",
+                    "       {} prints {}: WRONG, right is {} (as printed ∫W = {:.6})",
                     printed.source, printed.printed, printed.right, printed.integrates_to
                 )
             });

@@ -25,7 +25,7 @@ const FATEHI: (&str, &str) = ("Fatehi & Manzari 2011", "Eq. (47)");
 const BASA: (&str, &str) = ("Basa et al. 2009", "cubic spline with support 2h");
 const CHAUSSONNET: (&str, &str) = ("Chaussonnet et al. 2015", "§II.B, quintic spline with support 3h");
 /// h = 2σ with σ² the second moment, for these kernels and dimensions.
-const SWIFT: (&str, &str) = ("SWIFT", "kernel_hydro.h: R = γh with h = 2σ, Dehnen & Aly 2012, Eq. (8)");
+const SWIFT: (&str, &str) = ("SWIFT", "kernel_hydro.h: R = γh, h = 2σ");
 
 /// (who and where, kernel, R/h).
 const FIXED: &[((&str, &str), &str, i64)] = &[

@@ -388,7 +388,8 @@ impl Scene {
         for (disorder, lattice) in self.disorders.iter().cartesian_product(&self.lattices) {
             let (entry, dimension) = (disorder.entry(), lattice.dimension());
             let longest = disorder.motion().longest[dimension - 1] * disorder.amplitude();
-            let ladders = self.kernels.iter().map(|kernel| self.disorder_ladder(dimension, kernel, entry.moves));
+            let ladders =
+                self.kernels.iter().map(|kernel| self.disorder_ladder(dimension, kernel, entry.moves));
             let mut supports = ladders.flatten().concat();
             supports.push(self.displacement_ladder(dimension).0);
             let support = supports.iter().map(rational_to_f64).fold(0.0, f64::max);

@@ -230,7 +230,11 @@ fn what_is_listed_can_be_named() {
         ids("volume_rules"),
         ids("disorders")
             .iter()
-            .map(|id| if id == "none" { "\"none\"".into() } else { format!("\"{id}:0.1\"") })
+            .map(|id| match id.as_str() {
+                "none" => "\"none\"".into(),
+                "wave" => "\"wave:0.05,wavelength=1\"".into(),
+                _ => format!("\"{id}:0.03\""),
+            })
             .collect::<Vec<_>>()
             .join(", "),
         ids("claims")
