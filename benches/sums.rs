@@ -1,6 +1,8 @@
 //! Lattice sums in process: a certified 50-digit sum over a square lattice at R/Δ = 32, and what it is made of; the sums
 //! over pairs that sampling rests on. `just bench-sums` puts the same 50-digit sum by python-flint and mpmath beside it.
 
+#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+
 use divan::{Bencher, black_box};
 use remainder::exact::int;
 use remainder::kernel::{Kernel, by_id};

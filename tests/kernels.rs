@@ -1,6 +1,8 @@
 //! The catalogue of kernels against what the literature prints, the Gaussian against sums done another way, kernels of
 //! one's own, and the audit, from both sides: what holds at one order fails at the next.
 
+#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+
 use assert_cmd::Command;
 use num_traits::{One, Zero};
 use remainder::exact::{Coefficient, Enclosure, Polynomial, Rational, int, ratio};

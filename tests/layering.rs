@@ -1,6 +1,8 @@
 //! Data flows one way: a layer names only the layers below it, and the derived and the measured column never name each
 //! other. Read from the sources, so that it holds for code behind features as well.
 
+#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,8 @@
 //! Report schema 1: the hand-written samples, one for each kind of claim and of run, validate against the schema the
 //! program prints, and are read and written back without loss.
 
+#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+
 use jsonschema::Validator;
 use remainder::report::{ClaimKind, Report};
 use serde_json::{Value, json};

@@ -1,6 +1,8 @@
 //! `remainder sums` as a process: certified digits against values computed another way, names and components of the
 //! contract, closed forms, zeros by symmetry and by value, wrong input.
 
+#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+
 use assert_cmd::Command;
 use remainder::exact::parse_rational;
 use serde_json::Value;

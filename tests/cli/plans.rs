@@ -230,6 +230,8 @@ fn what_is_listed_can_be_named() {
         ids("volume_rules"),
         ids("disorders")
             .iter()
+            // Rows slide in a plane; this scene has a line as well.
+            .filter(|id| *id != "shear")
             .map(|id| match id.as_str() {
                 "none" => "\"none\"".into(),
                 "wave" => "\"wave:0.05,wavelength=1\"".into(),
