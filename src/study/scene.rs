@@ -1,8 +1,9 @@
 //! Scenes: one analysis as a file, TOML or JSON through the same structs.
 
-use super::define_lattice::{self, OwnLattice};
+use super::define_lattice;
 use super::source::{SceneError, SceneText};
-use crate::claim::{self, BetaExponent, Claim, Powers, Quantity, Statement, Verdict};
+use super::tables::{DxLadder, RawScene};
+use crate::claim::{self, BetaExponent, Claim, Powers, Quantity, Statement};
 use crate::exact::{Rational, int, ratio, rational_from_decimal, rational_to_f64};
 use crate::kernel::{Kernel, KernelDefinition, by_id_among};
 use crate::measured::neighbourhood_radius;
@@ -10,247 +11,9 @@ use crate::particles::{Disorder, Lattice, Moves, VolumeRule, lattice_among};
 use crate::sums::{Moment, nearest_distance};
 use itertools::Itertools as _;
 use num_traits::ToPrimitive;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
-
-/// A scene as written. Everything but `cases` has defaults.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RawScene {
-    /// What kind of study, its title and seed.
-    #[serde(default)]
-    pub study: StudyTable,
-    /// What to place.
-    pub cases: CasesTable,
-    /// What the scene adds to the catalogues.
-    #[serde(default, skip_serializing_if = "DefineTable::is_empty")]
-    pub define: DefineTable,
-    /// What to check.
-    #[serde(default)]
-    pub claims: ClaimsTable,
-    /// How far to vary Δ/h and d̃; defaults by dimension.
-    #[serde(default)]
-    pub ladders: LaddersTable,
-    /// How many samples of disorder.
-    #[serde(default)]
-    pub samples: SamplesTable,
-    /// How columns are compared.
-    #[serde(default)]
-    pub comparison: ComparisonTable,
-    /// What is admitted.
-    #[serde(default)]
-    pub limits: LimitsTable,
-    /// The verdict expected of each claim; exit code 1 if another comes out.
-    #[serde(default)]
-    pub expect: BTreeMap<String, Verdict>,
-}
-
-/// Reads a kernel from a file of its own.
-///
-/// # Errors
-/// [`SceneError`] with line and column where there is one.
-pub fn read_kernel(path: &Path) -> Result<Kernel, SceneError> {
-    let nowhere = SceneText { path: path.to_owned(), text: String::new() };
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| nowhere.error(format!("cannot be read as a kernel ({error})")))?;
-    let text = SceneText { path: path.to_owned(), text };
-    let mut definition: KernelDefinition = parse(&text)?;
-    if definition.id.is_empty() {
-        definition.id = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("kernel").into();
-    }
-    definition.build().map_err(|error| text.error_at(&error.field(), error.to_string(), None))
-}
-
-/// `[study]`
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct StudyTable {
-    /// `moment-orders`: exponents of moment sums.
-    pub kind: String,
-    /// A title for the report.
-    pub title: String,
-    /// Seed of all random numbers.
-    pub seed: u64,
-}
-
-impl Default for StudyTable {
-    fn default() -> Self {
-        Self { kind: "moment-orders".into(), title: String::new(), seed: 1 }
-    }
-}
-
-/// `[define]`: entries of one's own, named by their ids in `[cases]`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct DefineTable {
-    /// `[[define.kernel]]`
-    pub kernel: Vec<KernelDefinition>,
-    /// `[[define.lattice]]`
-    pub lattice: Vec<OwnLattice>,
-}
-
-impl DefineTable {
-    /// Whether the scene adds nothing.
-    fn is_empty(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
-/// `[cases]`: every combination is a case.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CasesTable {
-    /// Ids of kernels.
-    pub kernels: Vec<String>,
-    /// Ids of lattices; they bring their dimension with them.
-    pub lattices: Vec<String>,
-    /// `MODEL:AMPLITUDE`; the amplitude holds at the finest rung of a Δ/h ladder and is the largest of a d̃ ladder.
-    #[serde(default)]
-    pub disorders: Vec<String>,
-    /// `constant`, `number-density`.
-    #[serde(default = "constant_volumes")]
-    pub volume_rules: Vec<String>,
-}
-
-fn constant_volumes() -> Vec<String> {
-    vec![VolumeRule::Constant.id().into()]
-}
-
-/// `[claims]`
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct ClaimsTable {
-    /// Ids of claims, or groups of them (`fatehi-table-2`).
-    #[serde(rename = "use")]
-    pub chosen: Vec<String>,
-    /// Claims of one's own.
-    pub own: Vec<OwnClaim>,
-}
-
-impl Default for ClaimsTable {
-    fn default() -> Self {
-        Self { chosen: vec!["fatehi-table-2".into()], own: Vec::new() }
-    }
-}
-
-/// `[[claims.own]]`: the quantity is of the order d̃^displacement h^h (Δ/h)^dx_over_h.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct OwnClaim {
-    /// A name; it appears as `own/NAME`.
-    pub name: String,
-    /// A moment sum: `sum_dw`, `b_inverse`, ….
-    pub moment: String,
-    /// `regular-value`, `regular-deviation` or `disorder-deviation`.
-    pub quantity: String,
-    /// Exponent of d̃, a rational in beta.
-    #[serde(default = "zero_text")]
-    pub displacement: String,
-    /// Exponent of h.
-    #[serde(default = "zero_text")]
-    pub h: String,
-    /// Exponent of Δ/h.
-    pub dx_over_h: String,
-}
-
-fn zero_text() -> String {
-    "0".into()
-}
-
-/// `[ladders]`: entries for single dimensions; a dimension without one has the default.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct LaddersTable {
-    /// Δ/h on regular particles, by exact sums.
-    pub regular: Vec<DxLadder>,
-    /// Δ/h on disordered particles, d̃ and h held.
-    pub disorder: Vec<DxLadder>,
-    /// d̃ at one Δ/h.
-    pub displacement: Vec<DisplacementLadder>,
-}
-
-/// A ladder in Δ/h: whole R/Δ in geometric steps, each with offsets over one spacing.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DxLadder {
-    /// D.
-    pub dimension: u8,
-    /// Smallest R/Δ.
-    pub from: u32,
-    /// Largest R/Δ.
-    pub to: u32,
-    /// How many rungs.
-    pub rungs: u32,
-    /// Offsets of R/Δ per spacing over which the envelope is taken; they span one spacing of h/Δ.
-    pub offsets: u32,
-}
-
-/// A ladder in d̃: from the scene's amplitude down in factors of two.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DisplacementLadder {
-    /// D.
-    pub dimension: u8,
-    /// R/Δ at which it stands.
-    pub support_over_dx: f64,
-    /// How many rungs.
-    pub rungs: u32,
-}
-
-/// `[samples]`
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct SamplesTable {
-    /// Samples in a block: what is stored at once.
-    pub block: u64,
-    /// The relative standard error of every root mean square at which sampling stops.
-    pub precision: f64,
-    /// The most blocks.
-    pub most_blocks: u64,
-}
-
-impl Default for SamplesTable {
-    fn default() -> Self {
-        Self { block: 64, precision: 0.02, most_blocks: 32 }
-    }
-}
-
-/// `[comparison]`
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct ComparisonTable {
-    /// Margin of the equivalence test of exponents.
-    pub margin: f64,
-}
-
-impl Default for ComparisonTable {
-    fn default() -> Self {
-        Self { margin: 0.25 }
-    }
-}
-
-/// `[limits]`
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct LimitsTable {
-    /// Admit disorder under which neighbours can meet; affected cases become `inconclusive` instead of numbers.
-    pub allow_degenerate: bool,
-    /// Memory that one task may take.
-    pub memory_mib: u64,
-    /// The pairs that the study may take, as `remainder plan` estimates them; none is no limit.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub most_pairs: Option<u64>,
-}
-
-impl Default for LimitsTable {
-    fn default() -> Self {
-        Self { allow_degenerate: false, memory_mib: 2048, most_pairs: None }
-    }
-}
 
 /// A scene whose names are resolved and whose numbers are checked.
 #[derive(Debug, Clone)]
@@ -491,6 +254,22 @@ fn parse<T: serde::de::DeserializeOwned>(text: &SceneText) -> Result<T, SceneErr
             help: None,
         })
     }
+}
+
+/// Reads a kernel from a file of its own.
+///
+/// # Errors
+/// [`SceneError`] with line and column where there is one.
+pub fn read_kernel(path: &Path) -> Result<Kernel, SceneError> {
+    let nowhere = SceneText { path: path.to_owned(), text: String::new() };
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| nowhere.error(format!("cannot be read as a kernel ({error})")))?;
+    let text = SceneText { path: path.to_owned(), text };
+    let mut definition: KernelDefinition = parse(&text)?;
+    if definition.id.is_empty() {
+        definition.id = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("kernel").into();
+    }
+    definition.build().map_err(|error| text.error_at(&error.field(), error.to_string(), None))
 }
 
 fn dx_ladder(
