@@ -31,7 +31,8 @@ fn holds(enclosure: &Enclosure, (low, high): &(Rational, Rational)) {
 fn beta_origin_and_jumps_of_the_catalogue() {
     // (id, R/h, β, first odd power, order of the jump at each knot). Dehnen & Aly 2012: a Wendland function C^{2k} joins
     // zero with 2k + 1 continuous derivatives for D = 2, 3 and 2k for D = 1; a spline of degree n with n − 1.
-    let expected: [(&str, Rational, i64, Option<usize>, &[usize]); 10] = [
+    type Row = (&'static str, Rational, i64, Option<usize>, &'static [usize]);
+    let expected: [Row; 10] = [
         ("wendland-c2", int(1), 3, Some(3), &[4]),
         ("wendland-c4", int(1), 5, Some(5), &[6]),
         ("wendland-c6", int(1), 7, Some(7), &[8]),
