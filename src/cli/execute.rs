@@ -4,7 +4,7 @@ use super::arguments::{PlanArguments, RunArguments};
 use super::exit::{Exit, Failure};
 use super::progress::Progress;
 use super::terminal;
-use crate::report::{assemble, check_target, write_report};
+use crate::report::{assemble, check_target, to_json, write_report};
 use crate::study::{BlockStore, Plan, RunOptions, Scene, run as run_study};
 use serde_json::json;
 use std::path::PathBuf;
@@ -56,9 +56,7 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
     });
     write_report(&out, &report, &timings)?;
     if arguments.json {
-        let text =
-            serde_json::to_string_pretty(&report).unwrap_or_else(|error| unreachable!("plain data: {error}"));
-        print_out(&format!("{text}\n"));
+        print_out(&to_json(&report));
     } else {
         print_out(&terminal::table(&report));
         print_out(&format!("Written to {}.\n", out.display()));

@@ -1,12 +1,14 @@
 //! One record; JSON is the source, every other form is a view of it.
 
 mod assemble;
+mod layout;
 mod markdown;
 mod record;
 mod table;
 mod write;
 
 pub use assemble::assemble;
+pub use layout::to_json;
 pub use markdown::markdown;
 pub use record::*;
 pub use table::{Row, Section, sections};

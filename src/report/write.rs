@@ -1,9 +1,10 @@
 //! Writing a report, never over something that is none.
 
+use super::layout::to_json;
 use super::markdown::markdown;
 use super::record::{Report, SCHEMA};
 use crate::study::write_whole;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::fs;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -80,19 +81,14 @@ fn check_folder(folder: &Path) -> Result<(), WriteError> {
 pub fn write_report(folder: &Path, report: &Report, timings: &serde_json::Value) -> Result<(), WriteError> {
     check_target(folder)?;
     fs::create_dir_all(folder).map_err(|source| WriteError::File { path: folder.to_owned(), source })?;
-    let files =
-        [("report.json", pretty(report)), ("report.md", markdown(report)), ("timings.json", pretty(timings))];
+    let files = [
+        ("report.json", to_json(report)),
+        ("report.md", markdown(report)),
+        ("timings.json", to_json(timings)),
+    ];
     for (name, text) in files {
         let path = folder.join(name);
         write_whole(&path, text.as_bytes()).map_err(|source| WriteError::File { path, source })?;
     }
     Ok(())
-}
-
-/// JSON for people and diffs: indented, with a newline at the end.
-fn pretty<T: Serialize>(value: &T) -> String {
-    let mut text =
-        serde_json::to_string_pretty(value).unwrap_or_else(|error| unreachable!("plain data: {error}"));
-    text.push('\n');
-    text
 }
