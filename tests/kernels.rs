@@ -206,10 +206,18 @@ fn signs_slopes_and_inflection_points_are_certified() {
         let audit = Audit::of(&kernel);
         assert!(audit.nonnegative && audit.decreasing, "{}", kernel.id());
     }
-    let q = |id: &str| Audit::of(&kernel::by_id(id).unwrap()).inflection.unwrap();
+    let at = |id: &str, dimension: usize| {
+        let audit = Audit::of(&kernel::by_id(id).unwrap());
+        audit.inflections.into_iter().find(|inflection| inflection.dimension == dimension).unwrap()
+    };
+    let q = |id: &str| at(id, 1);
     // w″ = 20 (1 − q)² (4q − 1); −3 + 9q/2 on the first piece of the cubic spline.
     assert_eq!((q("wendland-c2").q.as_str(), q("cubic-spline").q.as_str()), ("1/4", "2/3"));
-    assert_eq!((q("cubic-spline").least_h_over_dx, q("wendland-c2").least_support_over_dx), (1.5, 4.0));
+    assert_eq!((q("cubic-spline").greatest_h_over_dx, q("wendland-c2").greatest_support_over_dx), (1.5, 4.0));
+    // ∇²w = 20 (1 − q)² ((D + 3) q − D) for C2.
+    assert_eq!((at("wendland-c2", 2).q.as_str(), at("wendland-c2", 3).q.as_str()), ("2/5", "1/2"));
+    assert_eq!((at("cubic-spline", 2).q.as_str(), at("cubic-spline", 3).q.as_str()), ("8/9", "1"));
+    assert!((at("gaussian", 3).value - 1.5_f64.sqrt()).abs() < 1e-15);
     assert!((q("gaussian").value - 0.5_f64.sqrt()).abs() < 1e-15);
     // (1 − q)² (1 − 4q) is negative beyond 1/4, falls to its minimum at 1/2, and rises from there.
     let w = Polynomial::new(vec![int(1), int(-1)]).pow(2);
@@ -223,6 +231,29 @@ fn signs_slopes_and_inflection_points_are_certified() {
     let p = Polynomial::new(vec![ratio(-1, 2), int(0), int(1)]);
     let root = &p.stretches(&int(0), &int(1), 80)[1].from;
     assert!(root.0 < root.1 && &root.0 * &root.0 < ratio(1, 2) && &root.1 * &root.1 > ratio(1, 2));
+}
+
+/// One Euler step of u_t = ∇²u by Fatehi's Eq. (11) on a line keeps a step monotone below the bound and not above it.
+#[test]
+fn monotone_data_stay_monotone_up_to_the_bound_and_not_beyond() {
+    for id in ["wendland-c2", "cubic-spline", "quintic-spline"] {
+        let kernel = kernel::by_id(id).unwrap();
+        let profile = kernel.polynomial().unwrap();
+        let second = profile.derivative().derivative();
+        let bound = Audit::of(&kernel).inflections[0].greatest_h_over_dx;
+        let is_monotone = |h: f64| {
+            let weight = |k: i64| {
+                let q = remainder::exact::rational_from_decimal(k.abs() as f64 / h).unwrap();
+                remainder::exact::rational_to_f64(&second.evaluate(&q))
+            };
+            let u = |i: i64| if i < 0 { 0.0 } else { 1.0 };
+            let reach = 40;
+            let rate =
+                |i: i64| (1..reach).map(|k| weight(k) * (u(i + k) + u(i - k) - 2.0 * u(i))).sum::<f64>();
+            (-reach..reach).all(|i| u(i + 1) + 1e-6 * rate(i + 1) >= u(i) + 1e-6 * rate(i) - 1e-15)
+        };
+        assert!(is_monotone(bound * 0.98) && !is_monotone(bound * 1.02), "{id}: {bound}");
+    }
 }
 
 fn own(pieces: &[(&str, &[&str])]) -> KernelDefinition {

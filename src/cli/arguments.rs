@@ -109,12 +109,15 @@ pub(super) struct PlanArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct SumsArguments {
-    /// Id of the kernel
-    #[arg(long)]
+    /// Id of the kernel, or a TOML or JSON file with `pieces`
+    #[arg(long, value_name = "NAME|FILE")]
     pub(super) kernel: String,
     /// Id of the lattice
     #[arg(long)]
     pub(super) lattice: String,
+    /// A scene whose `[[define.kernel]]` and `[[define.lattice]]` may be named as well
+    #[arg(long, value_name = "SCENE")]
+    pub(super) define: Option<PathBuf>,
     /// R/Δ, a decimal or p/q, read exactly
     #[arg(long, allow_hyphen_values = true)]
     pub(super) support_over_dx: String,

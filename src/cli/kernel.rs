@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 pub(super) fn audit(arguments: &KernelArguments) -> Result<Exit, Failure> {
-    let audit = Audit::of(&named(&arguments.kernel)?);
+    let audit = Audit::of(&named(&arguments.kernel, &[])?);
     if arguments.json {
         let text =
             serde_json::to_string_pretty(&audit).unwrap_or_else(|error| unreachable!("plain data: {error}"));
@@ -20,14 +20,14 @@ pub(super) fn audit(arguments: &KernelArguments) -> Result<Exit, Failure> {
     Ok(Exit::AsExpected)
 }
 
-/// A file if there is one of this name or the name ends like one; else an entry of the catalogue.
-fn named(name: &str) -> Result<Kernel, Failure> {
+/// A file if there is one of this name or the name ends like one; else an entry of the catalogue, or one's own.
+pub(super) fn named(name: &str, own: &[Kernel]) -> Result<Kernel, Failure> {
     let path = Path::new(name);
     let like_a_file = path.extension().is_some_and(|e| e == "toml" || e == "json");
     if like_a_file || path.is_file() {
         return Ok(read_kernel(path)?);
     }
-    kernel::by_id(name).map_err(|error| Failure::Arguments(error.to_string()))
+    kernel::by_id_among(name, own).map_err(|error| Failure::Arguments(error.to_string()))
 }
 
 fn text(audit: &Audit) -> String {
@@ -66,16 +66,19 @@ fn text(audit: &Audit) -> String {
     line("\nshape (certified)".into());
     line(format!("  w ≥ 0: {}", answer(audit.nonnegative, "negative", &audit.negative_between)));
     line(format!("  w falls: {}", answer(audit.decreasing, "rises", &audit.rising_between)));
-    match &audit.inflection {
-        Some(inflection) => {
-            line(format!("  inflection point q* = {}", inflection.q));
-            line(format!(
-                "  it lies farther than neighbours at Δ (q* h > Δ; Fatehi & Manzari 2011, below Eq. 12) if\n    h/Δ > {:.6}, \
-                 that is R/Δ > {:.6}",
-                inflection.least_h_over_dx, inflection.least_support_over_dx
-            ));
-        }
-        None => line("  no inflection point inside the support".into()),
+    line("\nmonotone data stay monotone under S2 (Fatehi & Manzari 2011, Eqs. 10 to 12, print the reverse) if ∇²W < 0".into());
+    line("only nearer than the nearest neighbour, q* h ≤ Δ on a line, square or cubic lattice".into());
+    for inflection in &audit.inflections {
+        line(format!(
+            "  {}-D  q* = {}: h/Δ ≤ {:.6}, R/Δ ≤ {:.6}",
+            inflection.dimension,
+            inflection.q,
+            inflection.greatest_h_over_dx,
+            inflection.greatest_support_over_dx
+        ));
+    }
+    if audit.inflections.is_empty() {
+        line("  ∇²W does not turn positive inside the support".into());
     }
     if !audit.conventions.is_empty() {
         line("\nh elsewhere (same R: h/Δ there = factor × h/Δ here)".into());

@@ -3,9 +3,10 @@
 use super::arguments::SumsArguments;
 use super::execute::print_out;
 use super::exit::{Exit, Failure};
+use super::kernel::named;
 use crate::exact::{Enclosure, Rational, Truth, parse_rational, rational_text};
-use crate::kernel;
-use crate::particles::{PointGroup, VolumeRule, lattice_by_id};
+use crate::particles::{PointGroup, VolumeRule, lattice_among};
+use crate::study::read_definitions;
 use crate::sums::{Component, LatticeSums, Moment, Reduction, Standing, SumError, SupportCount};
 use serde_json::{Value, json};
 
@@ -27,8 +28,10 @@ struct Line {
 
 pub(super) fn sums(arguments: &SumsArguments) -> Result<Exit, Failure> {
     let fault = |error: &dyn std::fmt::Display| Failure::Arguments(error.to_string());
-    let kernel = kernel::by_id(&arguments.kernel).map_err(|error| fault(&error))?;
-    let lattice = lattice_by_id(&arguments.lattice).map_err(|error| fault(&error))?;
+    let (own_kernels, own_lattices) =
+        arguments.define.as_deref().map(read_definitions).transpose()?.unwrap_or_default();
+    let kernel = named(&arguments.kernel, &own_kernels)?;
+    let lattice = lattice_among(&arguments.lattice, &own_lattices).map_err(|error| fault(&error))?;
     let rule = VolumeRule::by_id(&arguments.volume_rule).map_err(|error| fault(&error))?;
     let support = parse_rational(&arguments.support_over_dx).map_err(|error| fault(&error))?;
     if arguments.digits > MOST_DIGITS {

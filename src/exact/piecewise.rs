@@ -53,6 +53,12 @@ impl Piecewise {
         self.map(Polynomial::derivative)
     }
 
+    /// The sum with a function of the same knots; pieces without a partner are left out.
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        let pieces = self.pieces.iter().zip(&other.pieces).map(|(a, b)| a + b).collect();
+        Self { knots: self.knots.clone(), pieces }
+    }
+
     /// The function times `factor`.
     pub fn times(&self, factor: &Polynomial) -> Self {
         self.map(|piece| piece * factor)

@@ -43,8 +43,8 @@ pub struct Audit {
     pub decreasing: bool,
     /// Where it rises; both ends equal for a jump upwards.
     pub rising_between: Vec<(String, String)>,
-    /// Where the curvature of w first changes sign.
-    pub inflection: Option<Inflection>,
+    /// By dimension: where ∇²W turns positive for good; empty where it does not within the support.
+    pub inflections: Vec<Inflection>,
     /// What h means elsewhere.
     pub conventions: Vec<ConventionAudit>,
 }
@@ -79,17 +79,26 @@ pub struct PrintedAudit {
     pub integrates_to: f64,
 }
 
-/// The inflection point q* of w, for Fatehi & Manzari's condition below their Eq. (12): q* h > Δ.
+/// The distance q* beyond which ∇²W = W″ + (D − 1) W′/r is never negative: in 1-D the inflection
+/// point of w.
+///
+/// Fatehi & Manzari 2011, below Eq. (12), ask for data to stay monotone that the inflection point be
+/// farther than the nearest neighbour, q* h > Δ. That is the wrong way round. On a regular line
+/// their Eqs. (10) to (12) weigh u_j with ω_j W″(r_ij), j ≠ i. For u_t = ∇²u and small time steps
+/// they keep monotone data monotone if and only if no such weight is negative: q* h ≤ Δ. In D
+/// dimensions the same holds of ∇²W (no new extrema), whose change of sign lies farther out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Inflection {
+    /// D.
+    pub dimension: usize,
     /// q* = r/h, exact if it is rational.
     pub q: String,
     /// q*.
     pub value: f64,
-    /// 1/q*: the condition holds for h/Δ above it, nearest neighbours at Δ.
-    pub least_h_over_dx: f64,
+    /// 1/q*: up to it, no neighbour at Δ or farther is weighed negatively.
+    pub greatest_h_over_dx: f64,
     /// The same as R/Δ.
-    pub least_support_over_dx: f64,
+    pub greatest_support_over_dx: f64,
 }
 
 /// R/h elsewhere.
@@ -114,24 +123,30 @@ impl Audit {
     pub fn of(kernel: &Kernel) -> Self {
         let shape = match kernel.profile() {
             Profile::Polynomial(profile) => Shape::of(profile),
-            // exp(−q²) is positive and falls; its curvature (4q² − 2) exp(−q²) changes sign at 1/√2, if that is inside.
+            // exp(−q²) is positive and falls; ∇² of it, (4q² − 2D) exp(−q²), turns positive at √(D/2), if that is inside.
             Profile::Gaussian { cut } => Shape {
                 negative: Vec::new(),
                 rising: Vec::new(),
-                inflection: (cut * cut > ratio(1, 2))
-                    .then(|| Coefficient::from(Radical::sqrt_of(&ratio(1, 2)).unwrap_or_default())),
+                inflections: [1, 2, 3].map(|dimension| {
+                    let square = ratio(dimension, 2);
+                    (cut * cut > square)
+                        .then(|| Coefficient::from(Radical::sqrt_of(&square).unwrap_or_default()))
+                }),
             },
         };
         let support = Coefficient::from(kernel.support_over_h().clone()).to_f64();
-        let inflection = shape.inflection.map(|q| {
+        let inflections = shape.inflections.into_iter().zip(1..).filter_map(|(q, dimension)| {
+            let q = q?;
             let value = q.to_f64();
-            Inflection {
+            Some(Inflection {
+                dimension,
                 q: text(&q),
                 value,
-                least_h_over_dx: 1.0 / value,
-                least_support_over_dx: support / value,
-            }
+                greatest_h_over_dx: 1.0 / value,
+                greatest_support_over_dx: support / value,
+            })
         });
+        let inflections = inflections.collect();
         let conventions = conventions(kernel).into_iter().map(|convention| {
             let value = Coefficient::from(convention.support_over_h.clone()).to_f64();
             ConventionAudit {
@@ -158,7 +173,7 @@ impl Audit {
             negative_between: shape.negative,
             decreasing: shape.rising.is_empty(),
             rising_between: shape.rising,
-            inflection,
+            inflections,
             conventions: conventions.collect(),
         }
     }
@@ -207,7 +222,8 @@ fn text(value: &Coefficient) -> String {
 struct Shape {
     negative: Vec<(String, String)>,
     rising: Vec<(String, String)>,
-    inflection: Option<Coefficient>,
+    /// By dimension.
+    inflections: [Option<Coefficient>; 3],
 }
 
 impl Shape {
@@ -223,13 +239,15 @@ impl Shape {
                 rising.push((knots[k + 1].to_string(), knots[k + 1].to_string()));
             }
         }
-        let curvature: Vec<Stretch> = stretches(&slope.derivative())
-            .into_iter()
-            .filter(|stretch| stretch.sign != Ordering::Equal)
-            .collect();
-        let turn = curvature.windows(2).find(|pair| pair[0].sign != pair[1].sign);
-        let inflection = turn.map(|pair| between(&pair[1].from));
-        Self { negative: spans(&stretches(profile), Ordering::Less), rising, inflection }
+        let inflections = [0, 1, 2].map(|more| {
+            // q ∇²w = q w″ + (D − 1) w′, where its last negative stretch ends.
+            let curvature = slope.derivative().times(&Polynomial::monomial(ratio(1, 1), 1));
+            let laplacian = curvature.plus(&slope.scale(&ratio(more, 1)));
+            let stretches = stretches(&laplacian);
+            let last = stretches.iter().rposition(|stretch| stretch.sign == Ordering::Less)?;
+            (last + 1 < stretches.len()).then(|| between(&stretches[last].to))
+        });
+        Self { negative: spans(&stretches(profile), Ordering::Less), rising, inflections }
     }
 }
 

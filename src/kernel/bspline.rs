@@ -19,11 +19,11 @@ pub fn cubic_spline() -> Kernel {
     )
 }
 
-/// Quartic spline, R = 5/2 h (Dehnen & Aly 2012, Table 1).
+/// Quartic spline, R = 5/2 h (Price 2012, Eq. 7; without h, Dehnen & Aly 2012, Table 1).
 pub fn quartic_spline() -> Kernel {
     let citation = "schoenberg-1946; dehnen-aly-2012, Table 1";
     Kernel::of_catalogue("quartic-spline", "quartic B-spline", citation, central(4)).printed_by(
-        "price-2012, §2",
+        "price-2012, Eq. (7)",
         int(1),
         [rational(1, 24), over_pi(96, 1199), over_pi(1, 20)],
     )
@@ -33,9 +33,9 @@ pub fn quartic_spline() -> Kernel {
 pub fn quintic_spline() -> Kernel {
     let citation = "schoenberg-1946; chaussonnet-2015, §II.B";
     Kernel::of_catalogue("quintic-spline", "quintic B-spline", citation, central(5))
-        .printed_by("price-2012, §2", int(1), [rational(1, 120), over_pi(7, 478), over_pi(1, 120)])
-        // Copied into many codes.
-        .printed_by("liu-liu-2003, §3", int(1), [None, over_pi(7, 478), over_pi(3, 359)])
+        .printed_by("price-2012, Eq. (8)", int(1), [rational(1, 120), over_pi(7, 478), over_pi(1, 120)])
+        // Until commit 4f73366. Copied into many codes, such as Project Chrono (SphGeneral.cuh).
+        .printed_by("PySPH before April 2020", int(1), [None, over_pi(7, 478), over_pi(3, 359)])
 }
 
 /// The central B-spline of this degree on q ≥ 0, from its truncated powers: on each piece those that are positive there.

@@ -18,14 +18,15 @@ pub struct Convention {
 }
 
 const PYSPH: (&str, &str) = ("PySPH", "pysph/base/kernels.py, radius_scale");
-const DUAL: (&str, &str) = ("DualSPHysics", "FunSphKernelsCfg.h: support 2h, h = coefh √D dp");
+const DUAL: (&str, &str) = ("DualSPHysics", "FunSphKernel.h: R = 2h; JCaseCtes.cpp: h = coefh √D Δ");
 const SPLISH: (&str, &str) = ("SPlisHSPlasH", "SPHKernels.h: m_radius is the support");
 const GADGET: (&str, &str) = ("GADGET-2", "Springel 2005, Eq. (4): h is the support");
 const FATEHI: (&str, &str) = ("Fatehi & Manzari 2011", "Eq. (47)");
-const BASA: (&str, &str) = ("Basa et al. 2009", "cubic spline with support 2h");
-const CHAUSSONNET: (&str, &str) = ("Chaussonnet et al. 2015", "§II.B, quintic spline with support 3h");
+/// Not in so many words: 2h holds the 30 neighbours of §6, 3h the 29, 37 and 123 of §II.C.
+const BASA: (&str, &str) = ("Basa et al. 2009", "§6: about 30 neighbours at Δ/h = 0.637");
+const CHAUSSONNET: (&str, &str) = ("Chaussonnet et al. 2015", "§II.C: 29 neighbours at h/Δ = 1.05");
 /// h = 2σ with σ² the second moment, for these kernels and dimensions.
-const SWIFT: (&str, &str) = ("SWIFT", "kernel_hydro.h: R = γh, h = 2σ");
+const SWIFT: (&str, &str) = ("SWIFT", "kernel_hydro.h: R = γh; kernel_definitions.tex: h = 2σ");
 
 /// (who and where, kernel, R/h).
 const FIXED: &[((&str, &str), &str, i64)] = &[
@@ -48,7 +49,8 @@ const FIXED: &[((&str, &str), &str, i64)] = &[
     (CHAUSSONNET, "quintic-spline", 3),
 ];
 
-/// (kernel, dimensions) of SWIFT; its Wendland kernels have the form made for the dimension.
+/// (kernel, dimensions) of SWIFT; its Wendland C2 has the form made for the dimension, its C4 and
+/// C6 are not defined in one.
 const BY_SECOND_MOMENT: &[(&str, &[usize])] = &[
     ("cubic-spline", &[1, 2, 3]),
     ("quartic-spline", &[1, 2, 3]),
@@ -57,8 +59,6 @@ const BY_SECOND_MOMENT: &[(&str, &[usize])] = &[
     ("wendland-c4", &[2, 3]),
     ("wendland-c6", &[2, 3]),
     ("wendland-c2-1d", &[1]),
-    ("wendland-c4-1d", &[1]),
-    ("wendland-c6-1d", &[1]),
 ];
 
 /// The conventions known for a kernel.

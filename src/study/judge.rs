@@ -4,7 +4,7 @@ use super::ladder::fit_ladder;
 use super::outcome::{CaseId, JudgedCase, LadderFit, MeasuredColumn, Outcome, RolledClaim, Varies};
 use super::plan::{Plan, claims_in};
 use super::run::TaskResult;
-use super::scene::Scene;
+use super::scene::{CaseGroup, Scene};
 use crate::claim::{
     CaseVerdict, Claim, Judgement, Measured, Powers, Quantity, Statement, Verdict, judge_power_law, roll_up,
 };
@@ -17,25 +17,21 @@ pub(super) fn judge(scene: &Scene, plan: &Plan, results: &[TaskResult]) -> Outco
     let mut bench = Bench { plan, results, fits: Vec::new(), margin: scene.raw.comparison.margin };
     let mut judged = Vec::new();
     for claim in &scene.claims {
-        for lattice in &scene.lattices {
+        for CaseGroup { lattice, kernel, rule, disorders } in &scene.cases {
             if !claims_in(scene, lattice.dimension()).iter().any(|known| known.id == claim.id) {
                 continue;
             }
             let vanishes = Reduction::of(claim.moment, lattice, &PointGroup::of(lattice)).vanishes();
-            for kernel in &scene.kernels {
-                for rule in &scene.rules {
-                    let disorders: Vec<Option<&Disorder>> = match &claim.statement {
-                        Statement::PowerLaw { quantity, .. } if quantity.is_disordered() => {
-                            scene.disorders.iter().map(Some).collect()
-                        }
-                        _ => vec![None],
-                    };
-                    for disorder in disorders {
-                        let case = CaseId::new(kernel, lattice, disorder, *rule);
-                        let (measured, judgement) = bench.judge_case(claim, &case, vanishes);
-                        judged.push(JudgedCase { claim: claim.clone(), case, measured, judgement });
-                    }
+            let disorders: Vec<Option<&Disorder>> = match &claim.statement {
+                Statement::PowerLaw { quantity, .. } if quantity.is_disordered() => {
+                    disorders.iter().map(Some).collect()
                 }
+                _ => vec![None],
+            };
+            for disorder in disorders {
+                let case = CaseId::new(kernel, lattice, disorder, *rule);
+                let (measured, judgement) = bench.judge_case(claim, &case, vanishes);
+                judged.push(JudgedCase { claim: claim.clone(), case, measured, judgement });
             }
         }
     }

@@ -21,7 +21,7 @@ pub use event::Event;
 pub use outcome::{CaseId, JudgedCase, LadderFit, MeasuredColumn, Outcome, RolledClaim, Rung, Varies};
 pub use plan::{Plan, Task};
 pub use run::{RunOptions, Shard, run};
-pub use scene::{Scene, read_kernel};
+pub use scene::{Scene, read_definitions, read_kernel};
 pub use source::{SceneError, SceneText};
 pub use store::{BlockStore, write_whole};
 pub use tables::{DefineTable, RawScene};

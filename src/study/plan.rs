@@ -96,15 +96,15 @@ impl Plan {
             most_samples: 0,
             most_pairs: 0,
         };
-        let groups: Vec<PointGroup> = scene.lattices.iter().map(PointGroup::of).collect();
-        for (lattice, group) in scene.lattices.iter().zip(&groups) {
+        let lattices = scene.lattices().map(|lattice| (lattice, PointGroup::of(lattice))).collect_vec();
+        for (lattice, group) in &lattices {
             let claims = claims_in(scene, lattice.dimension());
             let regular = regular_moments(&claims, lattice, group);
             let disordered = disordered_moments(&claims);
-            for (kernel, rule) in scene.kernels.iter().cartesian_product(&scene.rules) {
-                plan.add_regular(scene, kernel, lattice, group, *rule, &regular);
-                for disorder in scene.disorders.iter().filter(|_| !disordered.is_empty()) {
-                    plan.add_disordered(scene, kernel, lattice, *rule, disorder, &disordered);
+            for cases in scene.cases.iter().filter(|cases| cases.lattice.id() == lattice.id()) {
+                plan.add_regular(scene, &cases.kernel, lattice, group, cases.rule, &regular);
+                for disorder in cases.disorders.iter().filter(|_| !disordered.is_empty()) {
+                    plan.add_disordered(scene, &cases.kernel, lattice, cases.rule, disorder, &disordered);
                 }
             }
         }
@@ -115,7 +115,7 @@ impl Plan {
             }
             plan.most_pairs = plan.most_pairs.saturating_add(task.cost(scene));
         }
-        plan.omissions = omissions(scene, &groups);
+        plan.omissions = omissions(scene, &lattices);
         plan
     }
 
@@ -322,9 +322,9 @@ fn disordered_moments(claims: &[Claim]) -> Vec<Moment> {
     claims.iter().filter(needs).map(|claim| claim.moment).sorted().dedup().collect()
 }
 
-fn omissions(scene: &Scene, groups: &[PointGroup]) -> Vec<Omission> {
+fn omissions(scene: &Scene, lattices: &[(&Lattice, PointGroup)]) -> Vec<Omission> {
     let mut omissions = Vec::new();
-    for (lattice, group) in scene.lattices.iter().zip(groups) {
+    for (lattice, group) in lattices {
         let claims = claims_in(scene, lattice.dimension());
         for moment in regular_moments(&claims, lattice, group) {
             let reduction = Reduction::of(moment, lattice, group);
@@ -366,7 +366,7 @@ fn omissions(scene: &Scene, groups: &[PointGroup]) -> Vec<Omission> {
         });
     }
     let dimensions =
-        (1..=3).filter(|d| scene.lattices.iter().all(|lattice| lattice.dimension() != *d)).collect_vec();
+        (1..=3).filter(|d| lattices.iter().all(|(lattice, _)| lattice.dimension() != *d)).collect_vec();
     if !dimensions.is_empty() {
         omissions.push(Omission {
             what: format!("dimension {}", dimensions.iter().join(", ")),
@@ -377,7 +377,7 @@ fn omissions(scene: &Scene, groups: &[PointGroup]) -> Vec<Omission> {
     let kernels = crate::kernel::catalogue();
     let unnamed = kernels
         .iter()
-        .filter(|k| scene.kernels.iter().all(|named| named.id() != k.id()))
+        .filter(|k| scene.kernels().all(|named| named.id() != k.id()))
         .map(Kernel::id)
         .collect_vec();
     if !unnamed.is_empty() {
@@ -387,14 +387,14 @@ fn omissions(scene: &Scene, groups: &[PointGroup]) -> Vec<Omission> {
             saved: None,
         });
     }
-    for kernel in &scene.kernels {
+    for kernel in scene.kernels() {
         omissions.extend(kernel.remark().map(|why| Omission {
             what: format!("{} beyond R", kernel.id()),
             why,
             saved: None,
         }));
     }
-    if !scene.disorders.is_empty() && scene.claims.iter().all(needs_regular) {
+    if scene.disorders().next().is_some() && scene.claims.iter().all(needs_regular) {
         omissions.push(Omission {
             what: "all disordered particles".into(),
             why: "no claim is about disorder".into(),
@@ -402,8 +402,7 @@ fn omissions(scene: &Scene, groups: &[PointGroup]) -> Vec<Omission> {
         });
     }
     let independent = scene
-        .disorders
-        .iter()
+        .disorders()
         .filter(|d| d.entry().moves == Moves::All)
         .map(|d| d.model().to_owned())
         .collect_vec();

@@ -2,7 +2,7 @@
 
 use super::define_lattice;
 use super::source::{SceneError, SceneText};
-use super::tables::{DxLadder, RawScene};
+use super::tables::{CasesTable, DefineTable, DxLadder, RawScene};
 use crate::claim::{self, BetaExponent, Claim, Powers, Quantity, Statement};
 use crate::exact::{Rational, int, ratio, rational_from_decimal, rational_to_f64};
 use crate::kernel::{Kernel, KernelDefinition, by_id_among};
@@ -11,6 +11,7 @@ use crate::particles::{Disorder, Lattice, Moves, VolumeRule, lattice_among};
 use crate::sums::{Moment, nearest_distance};
 use itertools::Itertools as _;
 use num_traits::ToPrimitive;
+use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -26,16 +27,23 @@ pub struct Scene {
     pub sha256: String,
     /// Whether ladders and samples were shortened for a first look.
     pub quick: bool,
-    /// The kernels.
-    pub kernels: Vec<Kernel>,
-    /// The lattices.
-    pub lattices: Vec<Lattice>,
-    /// The disorders, without `none`.
-    pub disorders: Vec<Disorder>,
-    /// The volume rules.
-    pub rules: Vec<VolumeRule>,
+    /// What to place: a kernel on a lattice with a volume rule, regular and under disorder. Each once.
+    pub cases: Vec<CaseGroup>,
     /// The claims.
     pub claims: Vec<Claim>,
+}
+
+/// A kernel on a lattice with a volume rule, and the disorders it is asked under.
+#[derive(Debug, Clone)]
+pub struct CaseGroup {
+    /// The lattice.
+    pub lattice: Lattice,
+    /// The kernel.
+    pub kernel: Kernel,
+    /// The volume rule.
+    pub rule: VolumeRule,
+    /// The disorders, without `none`.
+    pub disorders: Vec<Disorder>,
 }
 
 impl Scene {
@@ -82,40 +90,9 @@ impl Scene {
             return Err(text.error_at("study.kind", message, Some("write kind = \"moment-orders\"")));
         }
         let at = |keys: String, message: String| text.error_at(&keys, message, None);
-        let mut own: Vec<Kernel> = Vec::new();
-        for (index, definition) in raw.define.kernel.iter().enumerate() {
-            let place = |field: &str| format!("define.kernel.{index}.{field}");
-            let kernel = definition.build().map_err(|error| at(place(&error.field()), error.to_string()))?;
-            if own.iter().any(|known| known.id() == kernel.id()) {
-                return Err(at(place("id"), format!("defines the kernel '{}' twice", kernel.id())));
-            }
-            own.push(kernel);
-        }
-        let kernels = each(&raw.cases.kernels, "cases.kernels", at, |id| by_id_among(id, &own))?;
+        let own = own_kernels(&raw.define, text)?;
         let own_lattices = define_lattice::resolve(&raw.define.lattice, text)?;
-        let lattices =
-            each(&raw.cases.lattices, "cases.lattices", at, |id| lattice_among(id, &own_lattices))?;
-        let rules = each(&raw.cases.volume_rules, "cases.volume_rules", at, VolumeRule::by_id)?;
-        for (list, key) in
-            [(kernels.len(), "kernels"), (lattices.len(), "lattices"), (rules.len(), "volume_rules")]
-        {
-            if list == 0 {
-                return Err(at(format!("cases.{key}"), format!("names no {key}: give at least one")));
-            }
-        }
-        let allow = raw.limits.allow_degenerate;
-        let disorders = each(&raw.cases.disorders, "cases.disorders", at, |text| {
-            let disorder = Disorder::parse(text)?;
-            for lattice in &lattices {
-                disorder.check_dimension(lattice)?;
-                if !allow {
-                    disorder.check_reach(lattice)?;
-                }
-            }
-            Ok::<_, crate::particles::ParticleError>(disorder)
-        })?;
-        let disorders: Vec<Disorder> =
-            disorders.into_iter().filter(|disorder| disorder.entry().moves != Moves::Nothing).collect();
+        let cases = resolve_cases(&raw, &own, &own_lattices, at)?;
         let claims = resolve_claims(&raw, at)?;
         for id in raw.expect.keys() {
             if !claims.iter().any(|claim| claim.id == *id) {
@@ -126,48 +103,88 @@ impl Scene {
             }
         }
         let disordered = |claim: &Claim| matches!(&claim.statement, Statement::PowerLaw { quantity, .. } if quantity.is_disordered());
-        if disorders.is_empty() && claims.iter().any(disordered) {
+        if cases.iter().all(|group| group.disorders.is_empty()) && claims.iter().any(disordered) {
             return Err(text.error_at(
                 "cases",
                 "the claims need disorder, and cases.disorders names no model",
                 Some("for example disorders = [\"offset:0.1\", \"box:0.4\"]"),
             ));
         }
-        check_numbers(&raw, &lattices, at)?;
+        let lattices = cases.iter().map(|group| &group.lattice).unique_by(|lattice| lattice.id());
+        check_numbers(&raw, &lattices.collect_vec(), at)?;
         let canonical = serde_json::to_string(&raw).map_err(|error| text.error(error.to_string()))?;
         let sha256 = Sha256::digest(canonical.as_bytes()).iter().fold(String::new(), |mut hex, byte| {
             let _ = write!(hex, "{byte:02x}");
             hex
         });
-        let scene =
-            Self { name: name.to_owned(), raw, sha256, quick, kernels, lattices, disorders, rules, claims };
+        let scene = Self { name: name.to_owned(), raw, sha256, quick, cases, claims };
         scene.check_neighbourhoods(text)?;
         Ok(scene)
     }
 
-    /// Disordered neighbourhoods, which reach further than R by what particles may move, must fit in memory.
+    /// The kernels, each once.
+    pub fn kernels(&self) -> impl Iterator<Item = &Kernel> {
+        self.cases.iter().map(|group| &group.kernel).unique_by(|kernel| kernel.id())
+    }
+
+    /// The lattices, each once.
+    pub fn lattices(&self) -> impl Iterator<Item = &Lattice> {
+        self.cases.iter().map(|group| &group.lattice).unique_by(|lattice| lattice.id())
+    }
+
+    /// The disorders, each once.
+    pub fn disorders(&self) -> impl Iterator<Item = &Disorder> {
+        self.cases.iter().flat_map(|group| &group.disorders).unique_by(|disorder| disorder.to_string())
+    }
+
+    /// What is laid must fit in memory: regular supports, and disordered neighbourhoods, which reach further than R by
+    /// what particles may move.
     fn check_neighbourhoods(&self, text: &SceneText) -> Result<(), SceneError> {
         let allowed = self.raw.limits.memory_mib;
-        for (disorder, lattice) in self.disorders.iter().cartesian_product(&self.lattices) {
-            let (entry, dimension) = (disorder.entry(), lattice.dimension());
-            let longest = disorder.motion().longest[dimension - 1] * disorder.amplitude();
-            let ladders =
-                self.kernels.iter().map(|kernel| self.disorder_ladder(dimension, kernel, entry.moves));
-            let mut supports = ladders.flatten().concat();
-            supports.push(self.displacement_ladder(dimension).0);
-            let support = supports.iter().map(rational_to_f64).fold(0.0, f64::max);
-            for rule in &self.rules {
+        let largest = |ladder: Vec<Vec<Rational>>| {
+            ladder.into_iter().flatten().map(|support| rational_to_f64(&support)).fold(0.0, f64::max)
+        };
+        let written = |find: &dyn Fn(&CasesTable) -> Option<(usize, &'static str)>| {
+            let mut tables = self.raw.cases.tables.iter().enumerate();
+            let found =
+                tables.find_map(|(table, cases)| find(cases).map(|(index, field)| (table, index, field)));
+            found.map_or("cases".to_owned(), |(table, index, field)| {
+                self.raw.cases.place(table, &format!("{field}.{index}"))
+            })
+        };
+        for CaseGroup { lattice, kernel, rule, disorders } in &self.cases {
+            let dimension = lattice.dimension();
+            let support = largest(self.regular_ladder(dimension, kernel));
+            let sites = lattice.estimate_within(support);
+            let needed = sites * MIB_PER_SITE;
+            if needed > allowed as f64 {
+                let message = format!(
+                    "R/Δ = {support} on lattice '{}' needs about {needed:.0} MiB for {sites:.2e} sites, more than \
+                     the {allowed} MiB of limits.memory_mib: lower `to` of a [[ladders.regular]] for dimension {dimension}",
+                    lattice.id()
+                );
+                let place = written(&|cases| {
+                    Some((cases.lattices.iter().position(|id| id == lattice.id())?, "lattices"))
+                });
+                return Err(text.error_at(&place, message, None));
+            }
+            for disorder in disorders {
+                let longest = disorder.motion().longest[dimension - 1] * disorder.amplitude();
+                let ladder = self.disorder_ladder(dimension, kernel, disorder.entry().moves);
+                let support = largest(ladder).max(rational_to_f64(&self.displacement_ladder(dimension).0));
                 let sites = lattice.estimate_within(neighbourhood_radius(*rule, support, longest));
                 let needed = sites * MIB_PER_SITE;
                 if needed > allowed as f64 {
-                    let written = self.raw.cases.disorders.iter();
-                    let index = written.take_while(|written| written.trim() != disorder.to_string()).count();
                     let message = format!(
                         "disorder '{disorder}' at R/Δ = {support} with {rule} volumes on lattice '{}' needs about \
                          {needed:.0} MiB for {sites:.2e} sites, more than the {allowed} MiB of limits.memory_mib",
                         lattice.id()
                     );
-                    return Err(text.error_at(&format!("cases.disorders.{index}"), message, None));
+                    let place = written(&|cases| {
+                        let mut names = cases.disorders.iter();
+                        Some((names.position(|name| name.trim() == disorder.to_string())?, "disorders"))
+                    });
+                    return Err(text.error_at(&place, message, None));
                 }
             }
         }
@@ -297,6 +314,95 @@ fn each<T, E: std::fmt::Display>(
     resolved.collect()
 }
 
+fn own_kernels(define: &DefineTable, text: &SceneText) -> Result<Vec<Kernel>, SceneError> {
+    let at = |keys: String, message: String| text.error_at(&keys, message, None);
+    let mut own: Vec<Kernel> = Vec::new();
+    for (index, definition) in define.kernel.iter().enumerate() {
+        let place = |field: &str| format!("define.kernel.{index}.{field}");
+        let kernel = definition.build().map_err(|error| at(place(&error.field()), error.to_string()))?;
+        if own.iter().any(|known| known.id() == kernel.id()) {
+            return Err(at(place("id"), format!("defines the kernel '{}' twice", kernel.id())));
+        }
+        own.push(kernel);
+    }
+    Ok(own)
+}
+
+/// Reads what a scene defines (`[[define.kernel]]`, `[[define.lattice]]`), and nothing else of it.
+///
+/// # Errors
+/// [`SceneError`] with line and column where there is one.
+pub fn read_definitions(path: &Path) -> Result<(Vec<Kernel>, Vec<Lattice>), SceneError> {
+    #[derive(Deserialize)]
+    struct Definitions {
+        #[serde(default)]
+        define: DefineTable,
+    }
+    let nowhere = SceneText { path: path.to_owned(), text: String::new() };
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| nowhere.error(format!("cannot be read as a scene ({error})")))?;
+    let text = SceneText { path: path.to_owned(), text };
+    let Definitions { define } = parse(&text)?;
+    Ok((own_kernels(&define, &text)?, define_lattice::resolve(&define.lattice, &text)?))
+}
+
+/// Resolves the names under `[cases]`, and joins what several tables ask for.
+fn resolve_cases(
+    raw: &RawScene,
+    own_kernels: &[Kernel],
+    own_lattices: &[Lattice],
+    at: impl Fn(String, String) -> SceneError + Copy,
+) -> Result<Vec<CaseGroup>, SceneError> {
+    let mut groups: Vec<CaseGroup> = Vec::new();
+    for (table, cases) in raw.cases.tables.iter().enumerate() {
+        let place = |field: &str| raw.cases.place(table, field);
+        let kernels = each(&cases.kernels, &place("kernels"), at, |id| by_id_among(id, own_kernels))?;
+        let lattices = each(&cases.lattices, &place("lattices"), at, |id| lattice_among(id, own_lattices))?;
+        let rules = each(&cases.volume_rules, &place("volume_rules"), at, VolumeRule::by_id)?;
+        for (list, key) in
+            [(kernels.len(), "kernels"), (lattices.len(), "lattices"), (rules.len(), "volume_rules")]
+        {
+            if list == 0 {
+                return Err(at(place(key), format!("names no {key}: give at least one")));
+            }
+        }
+        let allow = raw.limits.allow_degenerate;
+        let disorders = each(&cases.disorders, &place("disorders"), at, |text| {
+            let disorder = Disorder::parse(text)?;
+            for lattice in &lattices {
+                disorder.check_dimension(lattice)?;
+                if !allow {
+                    disorder.check_reach(lattice)?;
+                }
+            }
+            Ok::<_, crate::particles::ParticleError>(disorder)
+        })?;
+        let placed = disorders.iter().filter(|disorder| disorder.entry().moves != Moves::Nothing);
+        let placed = placed.collect_vec();
+        for ((lattice, kernel), rule) in lattices.iter().cartesian_product(&kernels).cartesian_product(&rules)
+        {
+            let same = |known: &CaseGroup| {
+                known.lattice.id() == lattice.id() && known.kernel.id() == kernel.id() && known.rule == *rule
+            };
+            let index = groups.iter().position(same).unwrap_or_else(|| {
+                let (lattice, kernel) = (lattice.clone(), kernel.clone());
+                groups.push(CaseGroup { lattice, kernel, rule: *rule, disorders: Vec::new() });
+                groups.len() - 1
+            });
+            let group = &mut groups[index];
+            for disorder in &placed {
+                if group.disorders.iter().all(|known| known.to_string() != disorder.to_string()) {
+                    group.disorders.push((*disorder).clone());
+                }
+            }
+        }
+    }
+    if groups.is_empty() {
+        return Err(at("cases".into(), "names no case: give kernels and lattices".into()));
+    }
+    Ok(groups)
+}
+
 fn resolve_claims(
     raw: &RawScene,
     at: impl Fn(String, String) -> SceneError,
@@ -359,7 +465,7 @@ fn twice(ladder: &str, dimension: u8) -> String {
 
 fn check_numbers(
     raw: &RawScene,
-    lattices: &[Lattice],
+    lattices: &[&Lattice],
     at: impl Fn(String, String) -> SceneError,
 ) -> Result<(), SceneError> {
     let lists = [("regular", &raw.ladders.regular), ("disorder", &raw.ladders.disorder)];

@@ -4,8 +4,11 @@ use super::define_lattice::OwnLattice;
 use crate::claim::Verdict;
 use crate::kernel::KernelDefinition;
 use crate::particles::VolumeRule;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// A scene as written. Everything but `cases` has defaults.
@@ -15,8 +18,8 @@ pub struct RawScene {
     /// What kind of study, its title and seed.
     #[serde(default)]
     pub study: StudyTable,
-    /// What to place.
-    pub cases: CasesTable,
+    /// What to place: one `[cases]`, or several `[[cases]]`.
+    pub cases: CaseTables,
     /// What the scene adds to the catalogues.
     #[serde(default, skip_serializing_if = "DefineTable::is_empty")]
     pub define: DefineTable,
@@ -72,6 +75,68 @@ impl DefineTable {
     /// Whether the scene adds nothing.
     fn is_empty(&self) -> bool {
         *self == Self::default()
+    }
+}
+
+/// One `[cases]`, or several `[[cases]]`: the cases of all of them, each once.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaseTables {
+    /// The tables.
+    pub tables: Vec<CasesTable>,
+    /// Whether they were written as a list.
+    pub listed: bool,
+}
+
+impl CaseTables {
+    /// The path of keys of a field of a table.
+    pub(super) fn place(&self, table: usize, field: &str) -> String {
+        if self.listed { format!("cases.{table}.{field}") } else { format!("cases.{field}") }
+    }
+}
+
+impl Serialize for CaseTables {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match (self.listed, self.tables.first()) {
+            (false, Some(table)) => table.serialize(serializer),
+            _ => self.tables.serialize(serializer),
+        }
+    }
+}
+
+// By hand, not untagged: an error in a table keeps its own words and its place.
+impl<'de> Deserialize<'de> for CaseTables {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct OneOrMany;
+        impl<'de> Visitor<'de> for OneOrMany {
+            type Value = CaseTables;
+
+            fn expecting(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                formatter.write_str("a table [cases], or several [[cases]]")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<CaseTables, A::Error> {
+                let table = CasesTable::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(CaseTables { tables: vec![table], listed: false })
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<CaseTables, A::Error> {
+                let tables = Vec::deserialize(SeqAccessDeserializer::new(list))?;
+                Ok(CaseTables { tables, listed: true })
+            }
+        }
+        deserializer.deserialize_any(OneOrMany)
+    }
+}
+
+impl JsonSchema for CaseTables {
+    fn schema_name() -> Cow<'static, str> {
+        "CaseTables".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let one = generator.subschema_for::<CasesTable>();
+        let many = generator.subschema_for::<Vec<CasesTable>>();
+        json_schema!({ "anyOf": [one, many] })
     }
 }
 
