@@ -50,6 +50,7 @@ pub mod claim;
 pub mod cli;
 pub mod exact;
 pub mod kernel;
+pub mod language;
 pub mod measured;
 pub mod names;
 pub mod particles;
