@@ -14,6 +14,8 @@
 //! | [`kernel`] | radial kernels as exact piecewise polynomials, and all that follows from them |
 //! | [`particles`] | lattices, disorder models, volume rules, clouds and neighbours |
 //! | [`sums`] | moment sums: exact on lattices, in floating point over pairs |
+//! | [`language`] | operators as text: parser, types, catalogue |
+//! | [`derived`] | symbolic expansions, proofs of exactness, conservation |
 //! | [`measured`] | ladders of sums, samples of disorder, fitted power laws |
 //! | [`claim`] | published statements as data, and verdicts |
 //! | [`study`] | scenes, plans, runs that resume |
@@ -48,6 +50,7 @@
 
 pub mod claim;
 pub mod cli;
+pub mod derived;
 pub mod exact;
 pub mod kernel;
 pub mod language;

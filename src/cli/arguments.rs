@@ -29,6 +29,8 @@ pub(super) enum Command {
     Schema(SchemaArguments),
     /// Audit a kernel: normalisation, smoothness, sign, inflection point, what h means elsewhere
     Kernel(KernelArguments),
+    /// Expand an operator: its truncation error term by term, what vanishes and why, what it conserves
+    Expand(ExpandArguments),
     /// List what can be named in a scene
     List(ListArguments),
 }
@@ -142,6 +144,36 @@ pub(super) struct SumsArguments {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct ExpandArguments {
+    /// An id of the catalogue (F4), or an operator in the language
+    #[arg(value_name = "OPERATOR", allow_hyphen_values = true)]
+    pub(super) operator: Option<String>,
+    /// The highest order
+    #[arg(long, value_name = "ORDER", default_value_t = 4)]
+    pub(super) to: usize,
+    /// How to print
+    #[arg(long, value_enum, default_value = "text")]
+    pub(super) format: ExpandFormat,
+    /// The same as --format json
+    #[arg(long)]
+    pub(super) json: bool,
+    /// A lattice on which terms may vanish; may be given several times [default: all of the catalogue]
+    #[arg(long = "lattice", value_name = "ID")]
+    pub(super) lattices: Vec<String>,
+    /// Write every operator of the catalogue to this folder, as text and as LaTeX
+    #[arg(long, value_name = "FOLDER", conflicts_with = "operator")]
+    pub(super) all: Option<PathBuf>,
+}
+
+/// How an expansion is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum ExpandFormat {
+    Text,
+    Latex,
+    Json,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct KernelArguments {
     /// An id of the catalogue, or a TOML or JSON file with `pieces`
     #[arg(value_name = "NAME|FILE")]
@@ -186,6 +218,7 @@ pub(super) enum Listed {
     VolumeRules,
     /// Moment sums
     Moments,
+    Operators,
     /// Published claims
     Claims,
 }

@@ -5,6 +5,7 @@ use super::execute::print_out;
 use super::exit::{Exit, Failure};
 use crate::claim;
 use crate::kernel;
+use crate::language::operators;
 use crate::particles::{VolumeRule, disorder, lattice};
 use crate::report::Report;
 use crate::study::RawScene;
@@ -24,12 +25,13 @@ pub(super) fn schema(of: SchemaOf) -> Result<Exit, Failure> {
 type Entry = (String, String, String);
 
 pub(super) fn list(arguments: &ListArguments) -> Result<Exit, Failure> {
-    let all: [(Listed, &str, Vec<Entry>); 6] = [
+    let all: [(Listed, &str, Vec<Entry>); 7] = [
         (Listed::Kernels, "kernels", kernels()),
         (Listed::Lattices, "lattices", lattices()),
         (Listed::Disorders, "disorders", disorders()),
         (Listed::VolumeRules, "volume_rules", volume_rules()),
         (Listed::Moments, "moments", moments()),
+        (Listed::Operators, "operators", operators()),
         (Listed::Claims, "claims", claims()),
     ];
     let chosen = all.into_iter().filter(|(which, _, _)| arguments.what.is_none_or(|what| what == *which));
@@ -55,6 +57,14 @@ pub(super) fn list(arguments: &ListArguments) -> Result<Exit, Failure> {
         print_out(&text);
     }
     Ok(Exit::AsExpected)
+}
+
+fn operators() -> Vec<Entry> {
+    let entry = |entry: operators::Entry| {
+        let what = format!("≈ {}: {}", entry.target.formula(entry.field), entry.text);
+        (entry.id.to_owned(), what, format!("{}, {}", entry.source, entry.location))
+    };
+    operators::catalogue().into_iter().map(entry).collect()
 }
 
 fn kernels() -> Vec<Entry> {

@@ -1,5 +1,6 @@
 //! Exit codes that scripts can use, and what led to them.
 
+use crate::language::LanguageError;
 use crate::report::{Report, Verdict, WriteError};
 use crate::study::{SceneError, StudyError};
 use thiserror::Error;
@@ -55,6 +56,8 @@ pub(super) enum Failure {
     Study(#[from] StudyError),
     #[error(transparent)]
     Write(#[from] WriteError),
+    #[error("{1}")]
+    Operator(String, LanguageError),
     #[error("{0}")]
     Arguments(String),
 }

@@ -5,6 +5,7 @@ mod catalogue;
 mod diagnostic;
 mod execute;
 mod exit;
+mod expand;
 mod kernel;
 mod progress;
 mod sums;
@@ -34,6 +35,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Sums(arguments) => sums::sums(arguments),
         Command::Schema(schema) => catalogue::schema(schema.of),
         Command::Kernel(named) => kernel::audit(named),
+        Command::Expand(operator) => expand::expand(operator),
         Command::List(list) => catalogue::list(list),
     };
     match done {

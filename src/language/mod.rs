@@ -10,6 +10,7 @@
 //! ([`tree`]): the symbolic expansion in `derived`, stencils and compiled operators in `measured`.
 
 mod error;
+pub mod ground;
 pub mod operators;
 mod parse;
 mod target;

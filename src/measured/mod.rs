@@ -8,10 +8,13 @@ mod error;
 pub mod fit;
 mod regular;
 mod sample;
+mod stencil;
+mod tensor;
 pub mod window;
 
 pub use error::{FitError, Input};
 pub use regular::{RegularNorm, RegularRung, RegularSpec, regular_rung};
+pub use stencil::{Degeneracy, Stencil, StencilEntry, StencilError, stencil};
 pub use sample::{
     CLOSEST, MomentStatistics, SampleBlock, SampleError, SampleSpec, Sampler, Summary, is_precise,
     neighbourhood_radius, summarise,

@@ -30,6 +30,11 @@ impl PointGroup {
         Self { dimension: lattice.dimension(), operations }
     }
 
+    /// D.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
     /// Number of operations.
     pub fn order(&self) -> usize {
         self.operations.len()

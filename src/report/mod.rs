@@ -1,6 +1,7 @@
 //! One record; JSON is the source, every other form is a view of it.
 
 mod assemble;
+mod expansion;
 mod layout;
 mod markdown;
 mod record;
@@ -8,6 +9,9 @@ mod table;
 mod write;
 
 pub use assemble::assemble;
+pub use expansion::{
+    ConservationReport, ExpansionReport, OrderReport, TermReport, Vanishes, expansion_report,
+};
 pub use layout::to_json;
 pub use markdown::markdown;
 pub use record::*;

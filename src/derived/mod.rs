@@ -1,0 +1,26 @@
+//! The derived column: operators expanded in their Taylor series, with proofs of what vanishes. No particle is placed, no
+//! number is fitted or drawn.
+//!
+//! - `algebra`, `canonical`, `normal`, `rules`: expressions and their normal form.
+//! - `build`: from an operator's tree to its expression, the Taylor series in place of the field.
+//! - `expansion`: order by order, what multiplies ∇^m u, and what is left when the target is taken off.
+//! - `arrangement`: particles with rational places, on which what is left is shown not to vanish.
+//! - `conserve`: which sums are conserved, from the antisymmetry of what two particles exchange.
+
+mod algebra;
+mod arrangement;
+mod build;
+mod canonical;
+mod conserve;
+mod error;
+mod evaluate;
+mod expansion;
+mod normal;
+mod rules;
+mod write;
+
+pub use arrangement::Arrangement;
+pub use conserve::{Conservation, Conserved};
+pub use error::DeriveError;
+pub use expansion::{Expansion, MOST_ORDER, OrderTerms, VanishingTerm};
+pub use write::{Format, Printed};
