@@ -206,6 +206,11 @@ impl Builder {
 
     /// 1/x^n of a scalar: a monomial where it is one, else a factor of its own.
     fn reciprocal(&mut self, node: &Node, n: i32) -> Result<Expression, DeriveError> {
+        match &node.kind {
+            Kind::Power(a, m) if *m > 0 => return self.reciprocal(a, n * m),
+            Kind::Outer(a, b) => return Ok(multiplied(&self.reciprocal(a, n)?, &self.reciprocal(b, n)?)),
+            _ => {}
+        }
         let expression = normalised(self.expression(node)?)?;
         if expression.is_zero() {
             return Err(DeriveError::DividesByZero { span: node.span.clone() });

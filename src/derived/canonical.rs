@@ -158,7 +158,13 @@ impl<'a> Graph<'a> {
     fn named(&self, ranks: &[usize], free: &[Index], base: Label) -> Term {
         let factors = self.term.factors.len();
         let mut bounds: Vec<usize> = (0..self.term.bounds.len()).collect();
-        bounds.sort_by_key(|bound| ranks[factors + bound]);
+        // Outer sums before inner ones.
+        let depth = |bound: &usize| {
+            let centre_of = |label: Label| self.term.bounds.iter().find(|other| other.particle == label);
+            let first = centre_of(self.term.bounds[*bound].centre);
+            std::iter::successors(first, |outer| centre_of(outer.centre)).count()
+        };
+        bounds.sort_by_key(|bound| (depth(bound), ranks[factors + bound]));
         let label = |label: Label| {
             let place = bounds.iter().position(|bound| self.term.bounds[*bound].particle == label);
             place.map_or(label, |place| base + place as Label)

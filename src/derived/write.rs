@@ -258,6 +258,7 @@ impl<'a> Writer<'a> {
                 Format::Latex => format!("\\sum_{{{particle}}}"),
             });
         }
+        let mut gradients: Vec<String> = Vec::new();
         // ∂_a W in place of (W′/r) r_a where one r of the pair is there.
         for place in 0..self.term.factors.len() {
             let factor = &self.term.factors[place];
@@ -276,7 +277,7 @@ impl<'a> Writer<'a> {
                 let separation = &self.term.factors[twin];
                 let letter = self.letter(separation.indices[0]);
                 let pair = self.pair(&separation.particles);
-                parts.push(match self.format {
+                gradients.push(match self.format {
                     Format::Text => format!("∂_{letter}W_{pair}"),
                     Format::Latex => format!("\\partial_{{{letter}}} W_{{{pair}}}"),
                 });
@@ -286,6 +287,11 @@ impl<'a> Writer<'a> {
             if !used[place] {
                 parts.push(self.factor(factor));
             }
+        }
+        parts.extend(gradients);
+        // A sum of nothing else counts.
+        if !self.term.bounds.is_empty() && self.term.factors.is_empty() {
+            parts.push("1".into());
         }
         parts.join(" ")
     }

@@ -142,6 +142,7 @@ impl ExpansionReport {
             line(format!("  Note: {}", self.remark));
         }
         match &self.approximates {
+            Some(target) if target.starts_with('−') => line(format!("Truncation error ⟨L⟩_i − ({target}) =")),
             Some(target) => line(format!("Truncation error ⟨L⟩_i − {target} =")),
             None => line("What it approximates cannot be told from its units; ⟨L⟩_i =".into()),
         }
