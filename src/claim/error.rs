@@ -20,11 +20,11 @@ pub enum ClaimError {
         /// As written.
         text: String,
     },
-    /// Exponents of lengths that do not match the moment.
-    #[error("the exponents of d̃ and h add up to {found}, but {moment} is a length to the power {needed}")]
+    /// Exponents of lengths that do not match what the claim is about.
+    #[error("the exponents of d̃ and h add up to {found}, but {subject} is a length to the power {needed}")]
     Dimension {
-        /// The moment.
-        moment: String,
+        /// The moment sum or coefficient.
+        subject: String,
         /// The sum of the exponents.
         found: String,
         /// p − q.

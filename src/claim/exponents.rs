@@ -2,7 +2,7 @@
 
 use super::ClaimError;
 use crate::exact::{Rational, int, parse_rational, rational_text};
-use crate::sums::Moment;
+use crate::language::Subject;
 use num_traits::{One, Signed, Zero};
 use std::fmt;
 
@@ -104,19 +104,19 @@ impl Powers {
         })
     }
 
-    /// Whether d̃^a h^b has the dimension of the moment, a length to the power p − q.
+    /// Whether d̃^a h^b has the dimension of what it is stated of.
     ///
     /// # Errors
     /// [`ClaimError::Dimension`].
-    pub fn check(&self, moment: Moment) -> Result<(), ClaimError> {
+    pub fn check(&self, subject: &Subject) -> Result<(), ClaimError> {
         let found = self.displacement.at(3) + self.h.at(3);
-        if found == int(i64::from(moment.length_power())) {
+        if found == int(i64::from(subject.length_power())) {
             return Ok(());
         }
         Err(ClaimError::Dimension {
-            moment: moment.name(),
+            subject: subject.name(),
             found: rational_text(&found),
-            needed: moment.length_power(),
+            needed: subject.length_power(),
         })
     }
 }

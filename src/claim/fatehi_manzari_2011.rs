@@ -1,5 +1,5 @@
 //! R. Fatehi & M. T. Manzari, Error estimation in Smoothed Particle Hydrodynamics and a new scheme for second
-//! derivatives, Comput. Math. Appl. 61 (2011) 482–498: Table 2 and Eqs. (28)–(30), (32)–(39).
+//! derivatives, Comput. Math. Appl. 61 (2011) 482–498: Tables 1–3 and Eqs. (28)–(30), (32)–(39), (42), (49), (50).
 //!
 //! A row of Table 2 with two terms is two claims, `#regular` for |S^reg − continuum limit| and `#disorder` for the root
 //! mean square of S − S^reg. A printed Δ is h · Δ/h: d̃Δ(Δ/h)^n is d̃ h (Δ/h)^{n+1}. In Eqs. (36) and (37) the printed
@@ -7,6 +7,7 @@
 
 use super::{Claim, Powers, Quantity, Statement};
 use crate::exact::int;
+use crate::language::{Coefficient, Subject};
 use crate::sums::Moment;
 
 const SOURCE: &str = "fatehi-manzari-2011";
@@ -211,6 +212,204 @@ const POWER_LAWS: &[Row] = &[
     ),
 ];
 
+/// id, where, operator, order m of ∇^m u, quantity, exponents of d̃, h and Δ/h, text, dimensions.
+type OperatorRow =
+    (&'static str, &'static str, &'static str, u8, Quantity, [&'static str; 3], &'static str, &'static [usize]);
+
+/// Tables 1 and 3, what the text adds to them, and Eqs. (42), (49), (50).
+const OPERATORS: &[OperatorRow] = &[
+    (
+        "fatehi-table-1/F1",
+        "Table 1, row 1",
+        "F1",
+        1,
+        Deviation,
+        ["0", "0", "beta+1"],
+        "on regular particles the leading error of F1 is |∇u| O((Δ/h)^{β+1})",
+        ALL,
+    ),
+    (
+        "fatehi-table-1/F4",
+        "Table 1, row 2",
+        "F4",
+        3,
+        Value,
+        ["0", "2", "0"],
+        "on regular particles the leading error of F4 is |∇³u| O(h²)",
+        ALL,
+    ),
+    (
+        "fatehi-table-1/S2-10",
+        "Table 1, row 3",
+        "S2-10",
+        0,
+        Value,
+        ["0", "-2", "beta-1"],
+        "on regular particles the leading error of S2, Eq. (10), is u O(1/h² (Δ/h)^{β−1})",
+        ALL,
+    ),
+    (
+        "fatehi-table-1/S2-11",
+        "Table 1, row 4",
+        "S2-11",
+        2,
+        Deviation,
+        ["0", "0", "beta-1"],
+        "on regular particles the leading error of S2, Eq. (11), is |∇²u| O((Δ/h)^{β−1})",
+        ALL,
+    ),
+    (
+        "fatehi-table-1/S3",
+        "Table 1, row 5",
+        "S3",
+        2,
+        Deviation,
+        ["0", "0", "beta+1"],
+        "on regular particles the leading error of S3 is |∇²u| O((Δ/h)^{β+1})",
+        ALL,
+    ),
+    (
+        "fatehi-table-1-text/F2",
+        "Sec. 4.1, below Eq. (37)",
+        "F2",
+        1,
+        Deviation,
+        ["0", "0", "beta+1"],
+        "on regular particles the order of F2 is that of F1",
+        ALL,
+    ),
+    (
+        "fatehi-table-1-text/F3",
+        "Sec. 4.1, below Eq. (37)",
+        "F3",
+        1,
+        Deviation,
+        ["0", "0", "beta+1"],
+        "on regular particles the order of F3 is that of F1",
+        ALL,
+    ),
+    (
+        "fatehi-table-1-text/S1-as-S2",
+        "Sec. 4.1, below Eq. (37)",
+        "S1-8-F2",
+        2,
+        Deviation,
+        ["0", "0", "beta-1"],
+        "on regular particles the order of S1 (Eq. 8 with F2) is that of S2, Eq. (11)",
+        LINE,
+    ),
+    (
+        "fatehi-table-1-text/S1-as-S3",
+        "Sec. 4.1, below Eq. (37)",
+        "S1-8-F2",
+        2,
+        Deviation,
+        ["0", "0", "beta+1"],
+        "on regular particles the order of S1 (Eq. 8 with F2) is that of S3",
+        LINE,
+    ),
+    (
+        "fatehi-eq-49/S3",
+        "Eq. (49), second term",
+        "S3",
+        4,
+        Value,
+        ["0", "2", "0"],
+        "on regular particles S3 multiplies ∇⁴u by O(Δ²(h/Δ)²) = O(h²)",
+        ALL,
+    ),
+    (
+        "fatehi-eq-50/S4",
+        "Eq. (50)",
+        "S4",
+        4,
+        Value,
+        ["0", "2", "0"],
+        "on regular particles S4 multiplies ∇⁴u by O(Δ²(h/Δ)²) = O(h²)",
+        ALL,
+    ),
+    (
+        "fatehi-table-3/F1",
+        "Table 3, row 1",
+        "F1",
+        0,
+        Rms,
+        ["1", "-2", "beta-1"],
+        "on irregular particles the leading error of F1 is u O(d̃/h² (Δ/h)^{β−1})",
+        ALL,
+    ),
+    (
+        "fatehi-table-3/F2",
+        "Table 3, row 2, second term",
+        "F2",
+        1,
+        Rms,
+        ["1", "-1", "beta+1"],
+        "on irregular particles F2 multiplies ∇u by O((Δ/h)^{β+1}) and the disorder's O(d̃/h (Δ/h)^{β+1})",
+        ALL,
+    ),
+    (
+        "fatehi-table-3/F4",
+        "Table 3, row 3",
+        "F4",
+        2,
+        Rms,
+        ["1", "0", "beta+1"],
+        "on irregular particles the leading error of F4 is |∇²u| O(d̃ (Δ/h)^{β+1})",
+        ALL,
+    ),
+    (
+        "fatehi-table-3/S2-10",
+        "Table 3, row 4, second term",
+        "S2-10",
+        0,
+        Rms,
+        ["1", "-3", "beta-1"],
+        "on irregular particles S2, Eq. (10), multiplies u by O(1/h² (Δ/h)^{β−1}) and the disorder's O(d̃/h³ (Δ/h)^{β−1})",
+        ALL,
+    ),
+    (
+        "fatehi-table-3/S2-11",
+        "Table 3, row 5",
+        "S2-11",
+        1,
+        Rms,
+        ["1", "-2", "beta-1"],
+        "on irregular particles the leading error of S2, Eq. (11), is |∇u| O(d̃/h² (Δ/h)^{β−1})",
+        ALL,
+    ),
+    (
+        "fatehi-table-3/S3",
+        "Table 3, row 6",
+        "S3",
+        1,
+        Rms,
+        ["1", "-2", "beta-1"],
+        "on irregular particles the leading error of S3 is |∇u| O(d̃/h² (Δ/h)^{β−1})",
+        ALL,
+    ),
+    (
+        "fatehi-table-3-text/F3",
+        "Sec. 4.2, below Table 3",
+        "F3",
+        0,
+        Rms,
+        ["1", "-2", "beta-1"],
+        "on irregular particles F3 has the same condition as F1",
+        ALL,
+    ),
+    (
+        "fatehi-eq-42/S4",
+        "Eq. (42)",
+        "S4",
+        3,
+        Rms,
+        ["1", "0", "beta+1"],
+        "on irregular particles the leading error of S4 is |∇³u| O(d̃ (Δ/h)^{β+1})",
+        ALL,
+    ),
+];
+
 const ZEROS: &[(&str, &str, &str, &str)] = &[
     ("fatehi-eq-28/sum_dw#zero", "Eq. (28)", "sum_dw", "Σω∇W vanishes on regular particles"),
     ("fatehi-eq-29/sum_rrdw#zero", "Eq. (29)", "sum_rrdw", "Σωrr∇W vanishes on regular particles"),
@@ -218,7 +417,9 @@ const ZEROS: &[(&str, &str, &str, &str)] = &[
 ];
 
 pub(super) fn claims() -> Vec<Claim> {
-    let moment = |name: &str| Moment::by_name(name).unwrap_or_else(|error| unreachable!("{error}"));
+    let moment = |name: &str| {
+        Subject::Moment(Moment::by_name(name).unwrap_or_else(|error| unreachable!("{error}")))
+    };
     let power_laws = POWER_LAWS.iter().map(|(id, location, name, quantity, [d, h, x], text, dimensions)| {
         let mut powers = Powers::parse(d, h, x).unwrap_or_else(|error| unreachable!("{error}"));
         if id.starts_with("fatehi-eq-32/") {
@@ -229,7 +430,7 @@ pub(super) fn claims() -> Vec<Claim> {
             source: SOURCE.into(),
             location: (*location).into(),
             text: (*text).into(),
-            moment: moment(name),
+            subject: moment(name),
             statement: Statement::PowerLaw { quantity: *quantity, powers: Box::new(powers) },
             dimensions,
         }
@@ -239,11 +440,24 @@ pub(super) fn claims() -> Vec<Claim> {
         source: SOURCE.into(),
         location: (*location).into(),
         text: (*text).into(),
-        moment: moment(name),
+        subject: moment(name),
         statement: Statement::Zero,
         dimensions: ALL,
     });
-    power_laws.chain(zeros).collect()
+    let operators = OPERATORS.iter().map(|(id, location, name, order, quantity, [d, h, x], text, dimensions)| {
+        let coefficient = Coefficient::new(name, *order).unwrap_or_else(|error| unreachable!("{error}"));
+        let powers = Powers::parse(d, h, x).unwrap_or_else(|error| unreachable!("{error}"));
+        Claim {
+            id: (*id).into(),
+            source: SOURCE.into(),
+            location: (*location).into(),
+            text: (*text).into(),
+            subject: Subject::Coefficient(coefficient),
+            statement: Statement::PowerLaw { quantity: *quantity, powers: Box::new(powers) },
+            dimensions,
+        }
+    });
+    power_laws.chain(zeros).chain(operators).collect()
 }
 
 #[cfg(test)]
@@ -251,10 +465,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_claim_has_the_dimension_of_its_moment() {
+    fn every_claim_has_the_dimension_of_what_it_is_about() {
         for claim in claims() {
             if let Statement::PowerLaw { powers, .. } = &claim.statement {
-                assert_eq!(powers.check(claim.moment), Ok(()), "{}", claim.id);
+                assert_eq!(powers.check(&claim.subject), Ok(()), "{}", claim.id);
             }
         }
     }

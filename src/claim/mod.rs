@@ -1,6 +1,6 @@
 //! Published statements as data, and the verdicts on them.
 //!
-//! A claim names a moment sum, a quantity made of it and, for power laws, the exponents over the basis (d̃, h, Δ/h) as
+//! A claim names a moment sum or a coefficient of an operator's expansion, a quantity made of it and, for power laws, the exponents over the basis (d̃, h, Δ/h) as
 //! rationals in β. A new paper is one file here and one line in [`catalogue`]; a new claim is one entry in its paper's
 //! file, or one in a scene.
 
@@ -8,24 +8,26 @@ mod compare;
 mod error;
 mod exponents;
 mod fatehi_manzari_2011;
+mod printed;
 mod rollup;
 mod verdict;
 
 pub use compare::{Comparison, Judgement, Measured, compare_exponent, judge_power_law};
 pub use error::ClaimError;
 pub use exponents::{BetaExponent, Powers};
+pub use printed::{PrintedCoefficient, printed_coefficients};
 pub use rollup::{CaseVerdict, roll_up};
 pub use verdict::Verdict;
 
 use crate::names::nearest;
-use crate::sums::Moment;
+use crate::language::Subject;
 
-/// What is made of a moment sum S.
+/// What is made of a moment sum or a coefficient S.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Quantity {
     /// |S^reg| on the unperturbed lattice.
     RegularValue,
-    /// |S^reg − continuum limit| on the unperturbed lattice.
+    /// |S^reg − continuum limit| on the unperturbed lattice; of a coefficient, |S^reg − what the operator approximates|.
     RegularDeviation,
     /// The root mean square of |S − S^reg| over samples of the disorder.
     DisorderDeviation,
@@ -53,11 +55,12 @@ impl Quantity {
         self == Self::DisorderDeviation
     }
 
-    /// As a formula, for a moment printed as `moment`.
-    pub fn formula(self, moment: Moment) -> String {
-        let s = moment.formula();
+    /// As a formula.
+    pub fn formula(self, subject: &Subject) -> String {
+        let s = subject.formula();
         match self {
             Self::RegularValue => format!("|{s}|"),
+            Self::RegularDeviation if subject.coefficient().is_some() => format!("|{s} − target|"),
             Self::RegularDeviation => format!("|{s} − lim|"),
             Self::DisorderDeviation => format!("rms |{s} − reg|"),
         }
@@ -74,7 +77,7 @@ pub enum Statement {
         /// a, b, c, each a rational in β.
         powers: Box<Powers>,
     },
-    /// The moment vanishes on regular particles.
+    /// The moment or coefficient vanishes on regular particles.
     Zero,
 }
 
@@ -89,8 +92,8 @@ pub struct Claim {
     pub location: String,
     /// The statement as the paper makes it.
     pub text: String,
-    /// The moment sum it is about.
-    pub moment: Moment,
+    /// The moment sum, or the coefficient of an operator's expansion, that it is about.
+    pub subject: Subject,
     /// The statement.
     pub statement: Statement,
     /// The dimensions it is made for.

@@ -29,6 +29,14 @@ pub enum DeriveError {
         /// The limit.
         most: usize,
     },
+    /// A tensor has another rank than asked.
+    #[error("the tensor has rank {found}, not {wanted}")]
+    Rank {
+        /// Its rank.
+        found: usize,
+        /// What was asked.
+        wanted: usize,
+    },
     /// A coefficient has no value on these particles.
     #[error("the coefficient has no value at particle {particle}: {what}")]
     NoValue {

@@ -80,6 +80,42 @@ impl Expansion {
         Ok(Self { operator, target, orders })
     }
 
+    /// The expansion that has this tensor as its one coefficient: the first `order` indices belong to ∇^m u, the others to
+    /// a value of rank `rank`.
+    ///
+    /// # Errors
+    /// [`DeriveError`].
+    pub fn given(tensor: Operator, field: Field, order: usize, rank: u8) -> Result<Self, DeriveError> {
+        let mut expression = build(&tensor, Substitute::Itself)?;
+        let found = expression.free.len();
+        if found != order + usize::from(rank) {
+            return Err(DeriveError::Rank { found, wanted: order + usize::from(rank) });
+        }
+        let contracted: Vec<Index> = expression.free.drain(..order).collect();
+        let derivative = Factor::new(Symbol::Derivative(field), &[], &contracted);
+        let expression = normalised(expression.map(|term| term.factors.push(derivative.clone())))?;
+        let empty = Expression { free: expression.free.clone(), terms: Vec::new() };
+        let orders = (0..=order).map(|m| {
+            let own = if m == order { expression.clone() } else { empty.clone() };
+            OrderTerms { order: m, approximation: own.clone(), error: own }
+        });
+        let mut operator = tensor;
+        operator.field = field;
+        operator.root.rank = rank;
+        Ok(Self { orders: orders.collect(), operator, target: None })
+    }
+
+    /// The error of one order minus that of another expansion.
+    ///
+    /// # Errors
+    /// [`DeriveError`].
+    pub fn minus(&self, other: &Self, order: usize) -> Result<Self, DeriveError> {
+        let left = difference(&self.order(order)?.error, &other.order(order)?.error)?;
+        let mut rest = self.clone();
+        rest.orders[order] = OrderTerms { order, approximation: left.clone(), error: left };
+        Ok(rest)
+    }
+
     /// The degree up to which polynomials are taken exactly, on every arrangement of particles: proved by coefficients that
     /// vanish identically, and exact where the next one is shown not to vanish. None if not even constants are.
     ///

@@ -13,10 +13,12 @@ mod error;
 pub mod ground;
 pub mod operators;
 mod parse;
+mod subject;
 mod target;
 mod token;
 pub mod tree;
 
 pub use error::LanguageError;
+pub use subject::{Coefficient, Subject};
 pub use target::{Derivative, Target};
 pub use tree::{Field, Operator};

@@ -43,15 +43,34 @@ impl Operator {
     /// assert!(error.message.contains("not linear"));
     /// ```
     pub fn parse(text: &str) -> Result<Self, LanguageError> {
+        let (tree, field) = Self::read(text)?;
+        let Some(field) = field.filter(|_| tree.root.linear) else {
+            return Err(LanguageError::new(0..text.len(), "contains no field")
+                .with_help("an operator is linear in u_j, or in the vector v_j"));
+        };
+        Ok(Self { field, ..tree })
+    }
+
+    /// Reads a tensor that contains no field, such as one term of a printed truncation error.
+    ///
+    /// # Errors
+    /// [`LanguageError`], as [`Operator::parse`].
+    pub fn parse_coefficient(text: &str) -> Result<Self, LanguageError> {
+        let (tree, field) = Self::read(text)?;
+        if field.is_some() {
+            return Err(LanguageError::new(0..text.len(), "contains the field: a coefficient is free of it"));
+        }
+        Ok(tree)
+    }
+
+    fn read(text: &str) -> Result<(Self, Option<Field>), LanguageError> {
         let mut shared = Shared { particles: vec!['i'], field: None, nodes: 0, depth: 0 };
         let scope = vec![('i', 0)];
         let mut parser = Parser { tokens: tokens(text)?, at: 0, scope, inlined: None, shared: &mut shared };
         let root = parser.whole()?;
-        let Some(field) = shared.field.filter(|_| root.linear) else {
-            return Err(LanguageError::new(0..text.len(), "contains no field")
-                .with_help("an operator is linear in u_j, or in the vector v_j"));
-        };
-        Ok(Self { text: text.to_owned(), field, root, particles: shared.particles })
+        let field = shared.field;
+        let particles = shared.particles;
+        Ok((Self { text: text.to_owned(), field: Field::Scalar, root, particles }, field))
     }
 }
 

@@ -3,6 +3,7 @@
 //! Uses floating point and random numbers (and the exact lattice sums, the ground that both columns are checked against);
 //! never the derived column.
 
+mod coefficient;
 mod double_double;
 mod error;
 pub mod fit;
@@ -13,7 +14,7 @@ mod tensor;
 pub mod window;
 
 pub use error::{FitError, Input};
-pub use regular::{RegularNorm, RegularRung, RegularSpec, regular_rung};
+pub use regular::{RegularError, RegularNorm, RegularRung, RegularSpec, regular_rung};
 pub use stencil::{Degeneracy, Stencil, StencilEntry, StencilError, stencil};
 pub use sample::{
     CLOSEST, MomentStatistics, SampleBlock, SampleError, SampleSpec, Sampler, Summary, is_precise,

@@ -1,10 +1,16 @@
-//! Rungs of the regular ladder: exact lattice sums at one R/Δ and its offsets.
+//! Rungs of the regular ladder at one R/Δ and its offsets: exact lattice sums of moments, stencils in floating point for
+//! what an operator's expansion multiplies ∇^m u by.
 
-use crate::exact::{Coefficient, Enclosure, Rational, int};
+use super::coefficient::{Patch, coefficients, made_ready, norm, target_components};
+use super::sample::FLOOR_FACTOR;
+use super::stencil::StencilError;
+use crate::exact::{Enclosure, Rational, int, rational_to_f64};
 use crate::kernel::Kernel;
+use crate::language::{Coefficient, Subject};
 use crate::particles::{Lattice, PointGroup, VolumeRule};
 use crate::sums::{LatticeSums, Moment, Reduction, SumError};
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 /// What to sum.
 #[derive(Debug, Clone)]
@@ -15,36 +21,48 @@ pub struct RegularSpec {
     pub lattice: Lattice,
     /// Which volumes.
     pub rule: VolumeRule,
-    /// Which moments.
-    pub moments: Vec<Moment>,
+    /// Moment sums and coefficients of operators, sorted.
+    pub subjects: Vec<Subject>,
     /// R/Δ of the rung and its offsets.
     pub supports: Vec<Rational>,
     /// Memory that gathering the shells may take.
     pub memory_mib: u64,
 }
 
-/// One moment at one R/Δ, in units of h.
+/// One subject at one R/Δ, in units of h.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RegularNorm {
     /// |S^reg|, Frobenius.
     pub value: f64,
-    /// |S^reg − continuum limit|, Frobenius.
+    /// |S^reg − continuum limit|, Frobenius; of a coefficient, its distance from the target's.
     pub deviation: f64,
     /// Bound of the error of both.
     pub radius: f64,
 }
 
-/// A rung: by R/Δ, then by moment.
+/// A rung: by R/Δ, then by subject.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RegularRung {
     /// R/Δ, decimal.
     pub supports: Vec<f64>,
-    /// By R/Δ, then by moment in the order of the request.
+    /// By R/Δ, then by subject in the order of the request.
     pub norms: Vec<Vec<RegularNorm>>,
     /// Particles in the support with i, by R/Δ.
     pub in_support: Vec<u64>,
     /// Exact sums taken: one per component left by symmetry and R/Δ.
     pub exact_sums: u64,
+}
+
+/// Why a rung could not be taken.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RegularError {
+    /// A lattice sum.
+    #[error(transparent)]
+    Sum(#[from] SumError),
+    /// A stencil.
+    #[error(transparent)]
+    Stencil(#[from] StencilError),
 }
 
 /// Fractional bits of the first attempt, and of the last: a norm whose enclosure still holds zero at the last is taken
@@ -54,8 +72,8 @@ const BITS: [u32; 3] = [160, 320, 640];
 /// Sums one rung.
 ///
 /// # Errors
-/// As [`LatticeSums::new`], [`LatticeSums::count`] and [`LatticeSums::enclose`].
-pub fn regular_rung(spec: &RegularSpec, group: &PointGroup) -> Result<RegularRung, SumError> {
+/// [`RegularError`].
+pub fn regular_rung(spec: &RegularSpec, group: &PointGroup) -> Result<RegularRung, RegularError> {
     let Some(largest) = spec.supports.iter().max() else {
         return Ok(RegularRung {
             supports: Vec::new(),
@@ -64,14 +82,15 @@ pub fn regular_rung(spec: &RegularSpec, group: &PointGroup) -> Result<RegularRun
             exact_sums: 0,
         });
     };
-    let sums = LatticeSums::new(&spec.kernel, &spec.lattice, largest, &spec.moments, spec.memory_mib)?;
+    let moments: Vec<Moment> = spec.subjects.iter().filter_map(Subject::moment).collect();
+    let sums = LatticeSums::new(&spec.kernel, &spec.lattice, largest, &moments, spec.memory_mib)?;
     let dimension = spec.lattice.dimension();
     let reductions: Vec<Reduction> =
-        spec.moments.iter().map(|moment| Reduction::of(*moment, &spec.lattice, group)).collect();
+        moments.iter().map(|moment| Reduction::of(*moment, &spec.lattice, group)).collect();
     let free: Vec<_> = reductions.iter().map(Reduction::free).collect();
     // As accurate as the last attempt needs it: exact limits are rounded to each attempt's bits below.
     let finest = BITS[BITS.len() - 1] + 32;
-    let limits: Vec<Vec<Coefficient>> = free
+    let limits: Vec<Vec<crate::exact::Coefficient>> = free
         .iter()
         .map(|components| {
             components.iter().map(|c| spec.kernel.continuum_limit(dimension, &c.terms, finest)).collect()
@@ -81,10 +100,10 @@ pub fn regular_rung(spec: &RegularSpec, group: &PointGroup) -> Result<RegularRun
         RegularRung { supports: Vec::new(), norms: Vec::new(), in_support: Vec::new(), exact_sums: 0 };
     for support in &spec.supports {
         rung.in_support.push(sums.count(support)?.in_support);
-        rung.supports.push(crate::exact::rational_to_f64(support));
+        rung.supports.push(rational_to_f64(support));
         let h = support / spec.kernel.support_over_h();
         let mut norms = Vec::with_capacity(free.len());
-        for ((moment, components), limits) in spec.moments.iter().zip(&free).zip(&limits) {
+        for ((moment, components), limits) in moments.iter().zip(&free).zip(&limits) {
             rung.exact_sums += components.len() as u64;
             let scale = power(&h, -moment.length_power());
             let mut norm = RegularNorm { value: 0.0, deviation: 0.0, radius: 0.0 };
@@ -112,9 +131,57 @@ pub fn regular_rung(spec: &RegularSpec, group: &PointGroup) -> Result<RegularRun
             }
             norms.push(norm);
         }
+        norms.extend(coefficient_norms(spec, support)?);
         rung.norms.push(norms);
     }
     Ok(rung)
+}
+
+/// The coefficients at one R/Δ; moments sort before them.
+fn coefficient_norms(spec: &RegularSpec, support: &Rational) -> Result<Vec<RegularNorm>, RegularError> {
+    let asked: Vec<&Coefficient> = spec.subjects.iter().filter_map(Subject::coefficient).collect();
+    if asked.is_empty() {
+        return Ok(Vec::new());
+    }
+    let dimension = spec.lattice.dimension();
+    let radius = rational_to_f64(support);
+    let (evaluator, h) = made_ready(&spec.kernel, dimension);
+    let reach = if asked.iter().any(|coefficient| coefficient.is_nested()) { 2.0 } else { 1.0 };
+    let sites = spec.lattice.sites_within(reach * radius);
+    let places: Vec<[f64; 3]> = sites.iter().map(|site| site.position.map(|x| x / radius)).collect();
+    let centre = sites.iter().position(|site| site.cell == [0; 3] && site.basis == 0).unwrap_or(0);
+    let square = |x: &[f64; 3]| x.iter().map(|x| x * x).sum::<f64>();
+    let inside = places.iter().enumerate().filter(|(_, place)| square(place) < 1.0);
+    let of_centre: Vec<(usize, [f64; 3])> = inside.map(|(q, place)| (q, place.map(|x| -x))).collect();
+    let volume = match spec.rule {
+        VolumeRule::Constant => {
+            let volume = spec.lattice.particle_volume().enclose(96).midpoint_f64();
+            (0..dimension).fold(volume, |volume, _| volume / radius)
+        }
+        VolumeRule::NumberDensity => {
+            let patch_kernel = |x: f64| {
+                let mut lanes = [2.0; 8];
+                lanes[0] = x;
+                evaluator.evaluate(&lanes).g[0][0]
+            };
+            1.0 / of_centre.iter().map(|(_, r)| patch_kernel(square(r).sqrt())).sum::<f64>()
+        }
+    };
+    let volumes = vec![volume; places.len()];
+    let patch = Patch { dimension, evaluator: &evaluator, h, centre, of_centre, volumes, places };
+    let values = coefficients(&spec.subjects, &patch)?;
+    let norms = asked.iter().zip(values).map(|(coefficient, (components, magnitude))| {
+        let power = Subject::Coefficient((*coefficient).clone()).length_power();
+        let to_h = h.powi(-power);
+        let target = target_components(coefficient, dimension);
+        let deviation: Vec<f64> = components.iter().zip(target).map(|(c, t)| c - t).collect();
+        RegularNorm {
+            value: norm(coefficient, dimension, &components) * to_h,
+            deviation: norm(coefficient, dimension, &deviation) * to_h,
+            radius: FLOOR_FACTOR * f64::EPSILON * magnitude * to_h,
+        }
+    });
+    Ok(norms.collect())
 }
 
 fn norm_of(value: &Enclosure, deviation: &Enclosure) -> RegularNorm {

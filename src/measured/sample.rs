@@ -4,8 +4,11 @@
 //! Frobenius norm |S − S^reg|, in units of h. Sample n is a pure function of (seed, n, lattice site): R does not change it,
 //! nor does the number of threads.
 
+use super::coefficient::{Patch, coefficients, made_ready, norm as coefficient_norm, target_components};
+use super::stencil::StencilError;
 use crate::exact::rational_to_f64;
-use crate::kernel::Kernel;
+use crate::kernel::{Evaluator, Kernel};
+use crate::language::Subject;
 use crate::particles::{
     Cloud, CloudError, Disorder, Draw, Lattice, Motion, Moves, Neighbours, SampleStream, Site, Support,
     VolumeRule,
@@ -30,6 +33,14 @@ pub enum SampleError {
         /// What is wrong with it.
         source: CloudError,
     },
+    /// An operator has no stencil there.
+    #[error("sample {sample}: {source}")]
+    Stencil {
+        /// Which sample.
+        sample: u64,
+        /// Why.
+        source: StencilError,
+    },
 }
 
 /// What to sample.
@@ -47,13 +58,13 @@ pub struct SampleSpec {
     pub support_over_dx: f64,
     /// Which volumes.
     pub rule: VolumeRule,
-    /// Which moments.
-    pub moments: Vec<Moment>,
+    /// Moment sums and coefficients of operators, sorted.
+    pub subjects: Vec<Subject>,
     /// Seed of the random numbers.
     pub seed: u64,
 }
 
-/// Statistics of one moment over a block of samples; all in units of h.
+/// Statistics of one subject over a block of samples; all in units of h.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct MomentStatistics {
     /// Σ |S − S^reg|².
@@ -75,7 +86,7 @@ pub struct SampleBlock {
     pub degenerate: u64,
     /// Kernel evaluations.
     pub pairs: u64,
-    /// By moment, in the order of the request.
+    /// By subject, in the order of the request.
     pub moments: Vec<MomentStatistics>,
 }
 
@@ -89,9 +100,11 @@ pub struct Sampler {
     sites: Vec<Site>,
     sums: PairSums<f64>,
     density: PairSums<f64>,
+    /// For coefficients of operators, and h/R.
+    evaluator: (Evaluator<f64>, f64),
     /// ω R^{-D} of the constant rule.
     weight: f64,
-    /// S^reg in units of R.
+    /// S^reg in units of R: the components of the moments, then those of each coefficient.
     regular: Vec<f64>,
     /// κ^{p−q}: from units of R to units of h.
     to_h: Vec<f64>,
@@ -101,7 +114,7 @@ pub struct Sampler {
 
 /// How many rounding errors of a sum's own magnitude count as its floor: the error of adding n ≤ 10⁵ terms in eight
 /// lanes behaves like √(n/8) ε ≲ 112 ε, of which a random walk reaches a fraction.
-const FLOOR_FACTOR: f64 = 64.0;
+pub(super) const FLOOR_FACTOR: f64 = 64.0;
 
 /// How far from i, in Δ, lattice sites are laid when no particle moves by more than `longest` Δ: neighbours of i after
 /// both moved; with number-density volumes the neighbours of these as well.
@@ -122,11 +135,13 @@ impl Sampler {
         let (moves, motion) = (spec.disorder.entry().moves, spec.disorder.motion());
         let longest = motion.longest[dimension - 1] * spec.amplitude;
         let sites = spec.lattice.sites_within(neighbourhood_radius(spec.rule, spec.support_over_dx, longest));
-        let sums = PairSums::new(&spec.kernel, dimension, &spec.moments);
+        let moments: Vec<Moment> = spec.subjects.iter().filter_map(Subject::moment).collect();
+        let sums = PairSums::new(&spec.kernel, dimension, &moments);
         let density = PairSums::new(&spec.kernel, dimension, &[Moment::default()]);
         let volume = spec.lattice.particle_volume().enclose(96).midpoint_f64();
         let kappa = rational_to_f64(spec.kernel.support_over_h());
-        let to_h = spec.moments.iter().map(|moment| kappa.powi(moment.length_power())).collect();
+        let to_h = spec.subjects.iter().map(|subject| kappa.powi(subject.length_power())).collect();
+        let evaluator = made_ready(&spec.kernel, dimension);
         let weight = volume / power(spec.support_over_dx, dimension);
         let h_over_dx = spec.support_over_dx / kappa;
         let mut sampler = Self {
@@ -137,6 +152,7 @@ impl Sampler {
             sites,
             sums,
             density,
+            evaluator,
             weight,
             regular: Vec::new(),
             to_h,
@@ -146,7 +162,8 @@ impl Sampler {
         if let Neighbourhood::Sums(regular, _) = sampler.evaluate(&still, 0)? {
             sampler.regular = regular;
         }
-        sampler.floors = sampler.magnitudes(&still).iter().map(|m| FLOOR_FACTOR * f64::EPSILON * m).collect();
+        let magnitudes = sampler.magnitudes(&still)?;
+        sampler.floors = magnitudes.iter().map(|m| FLOOR_FACTOR * f64::EPSILON * m).collect();
         Ok(sampler)
     }
 
@@ -173,7 +190,7 @@ impl Sampler {
             samples: count,
             degenerate: 0,
             pairs: 0,
-            moments: vec![MomentStatistics::default(); self.spec.moments.len()],
+            moments: vec![MomentStatistics::default(); self.spec.subjects.len()],
         };
         for neighbourhood in evaluated {
             let Neighbourhood::Sums(components, pairs) = neighbourhood else {
@@ -183,7 +200,7 @@ impl Sampler {
             block.pairs += pairs;
             let deviation: Vec<f64> = components.iter().zip(&self.regular).map(|(s, reg)| s - reg).collect();
             for (index, statistics) in block.moments.iter_mut().enumerate() {
-                let norm = self.sums.frobenius(index, &deviation) * self.to_h[index];
+                let norm = self.norm(index, &deviation) * self.to_h[index];
                 let square = norm * norm;
                 statistics.sum_square += square;
                 statistics.sum_fourth += square * square;
@@ -227,7 +244,7 @@ impl Sampler {
                 pairs.push((j, r_ij));
             }
         }
-        let weights = match self.spec.rule {
+        let weights: Vec<f64> = match self.spec.rule {
             VolumeRule::Constant => vec![self.weight; pairs.len()],
             VolumeRule::NumberDensity => {
                 let centres: Vec<usize> = pairs.iter().map(|(j, _)| *j).collect();
@@ -238,11 +255,50 @@ impl Sampler {
             }
         };
         let mut sums = self.sums.start();
-        for ((_, r_ij), weight) in pairs.iter().zip(weights) {
-            self.sums.add(&mut sums, r_ij.map(|x| x / radius), weight);
+        for ((_, r_ij), weight) in pairs.iter().zip(&weights) {
+            self.sums.add(&mut sums, r_ij.map(|x| x / radius), *weight);
         }
-        let (components, pairs) = self.sums.finish(sums);
-        Ok(Neighbourhood::Sums(components, pairs))
+        let (mut components, count) = self.sums.finish(sums);
+        let patch = self.patch(&pairs, &weights);
+        let fault = |source| SampleError::Stencil { sample, source };
+        for (own, _) in coefficients(&self.spec.subjects, &patch).map_err(fault)? {
+            components.extend(own);
+        }
+        Ok(Neighbourhood::Sums(components, count))
+    }
+
+    /// The neighbours of i with their volumes, as operators see them. Particles are numbered by their place in the list.
+    fn patch(&self, pairs: &[(usize, [f64; 3])], weights: &[f64]) -> Patch<'_> {
+        let radius = self.spec.support_over_dx;
+        let centre = pairs.iter().position(|(_, r)| r.iter().all(|x| *x == 0.0)).unwrap_or(0);
+        let own = pairs.iter().enumerate().map(|(place, (_, r))| (place, r.map(|x| x / radius)));
+        Patch {
+            dimension: self.spec.lattice.dimension(),
+            evaluator: &self.evaluator.0,
+            h: self.evaluator.1,
+            centre,
+            of_centre: own.collect(),
+            volumes: weights.to_vec(),
+            places: Vec::new(),
+        }
+    }
+
+    /// The norm of a subject from the components of all.
+    fn norm(&self, subject: usize, components: &[f64]) -> f64 {
+        let moments = self.sums.moments().len();
+        if subject < moments {
+            return self.sums.frobenius(subject, components);
+        }
+        let dimension = self.spec.lattice.dimension();
+        let mut from = self.sums.components();
+        for (place, coefficient) in self.spec.subjects.iter().filter_map(Subject::coefficient).enumerate() {
+            let size = target_components(coefficient, dimension).len();
+            if moments + place == subject {
+                return coefficient_norm(coefficient, dimension, &components[from..from + size]);
+            }
+            from += size;
+        }
+        0.0
     }
 
     /// V_j R^{-D} = 1 / Σ_k F(|r_jk|/R) for the particles at `centres`; `None` if two particles coincide.
@@ -276,9 +332,9 @@ impl Sampler {
     }
 
     /// Σ over the pairs of the norm of each moment's summand: what rounding errors are relative to.
-    fn magnitudes(&self, positions: &[[f64; 3]]) -> Vec<f64> {
+    fn magnitudes(&self, positions: &[[f64; 3]]) -> Result<Vec<f64>, SampleError> {
         let radius = self.spec.support_over_dx;
-        let mut magnitudes = vec![0.0; self.spec.moments.len()];
+        let mut magnitudes = vec![0.0; self.sums.moments().len()];
         for position in positions {
             let mut one = self.sums.start();
             self.sums.add(&mut one, position.map(|x| -x / radius), self.weight);
@@ -287,7 +343,14 @@ impl Sampler {
                 *magnitude += self.sums.frobenius(index, &components) * self.to_h[index];
             }
         }
-        magnitudes
+        let inside = positions.iter().filter(|x| x.iter().map(|x| x * x).sum::<f64>() < radius * radius);
+        let pairs: Vec<(usize, [f64; 3])> = inside.map(|x| (0, x.map(|x| 0.0 - x))).collect();
+        let patch = self.patch(&pairs, &vec![self.weight; pairs.len()]);
+        let fault = |source| SampleError::Stencil { sample: 0, source };
+        for (_, magnitude) in coefficients(&self.spec.subjects, &patch).map_err(fault)? {
+            magnitudes.push(magnitude * self.to_h[magnitudes.len()]);
+        }
+        Ok(magnitudes)
     }
 }
 

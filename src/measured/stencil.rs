@@ -7,6 +7,7 @@ use crate::language::ground::{Ground, MissingQuantity};
 use crate::language::tree::{Kind, Node, OfPair, Particle};
 use crate::language::{Field, Operator};
 use std::collections::HashMap;
+use std::rc::Rc;
 use thiserror::Error;
 
 /// Why an operator has no stencil at a particle.
@@ -100,17 +101,7 @@ pub fn stencil<T: Number>(
     ground: &dyn Ground<T>,
     i: usize,
 ) -> Result<Stencil<T>, StencilError> {
-    let mut walk = Walk {
-        ground,
-        dimension: ground.dimension(),
-        components: if operator.field == Field::Vector { ground.dimension() } else { 1 },
-        bound: vec![None; operator.particles.len()],
-        b: HashMap::new(),
-        b_hat: HashMap::new(),
-        neighbours: HashMap::new(),
-        least_norm: Vec::new(),
-    };
-    walk.bound[0] = Some((i, [T::nought(), T::nought(), T::nought()]));
+    let mut walk = Walk::new(operator, ground, i);
     let Value::Linear(terms) = walk.value(&operator.root)? else {
         unreachable!("the parser has checked that operators are linear")
     };
@@ -126,6 +117,31 @@ pub fn stencil<T: Number>(
         entries: entries.collect(),
         least_norm: walk.least_norm,
     })
+}
+
+/// An operator applied to monomials about particle i: its moments, without a stencil. What does not depend on the
+/// neighbour is taken once for all of them, so that an operator inside another costs one pass more and not one for each.
+pub(super) struct Moments<'a, T> {
+    walk: Walk<'a, T>,
+    operator: &'a Operator,
+}
+
+impl<'a, T: Number> Moments<'a, T> {
+    pub(super) fn new(operator: &'a Operator, ground: &'a dyn Ground<T>, i: usize) -> Self {
+        Self { walk: Walk::new(operator, ground, i), operator }
+    }
+
+    /// Σ_j c_ij (r_j − r_i)^α / α!, by component of the field, then of the value; and the sum of the terms' magnitudes.
+    pub(super) fn of(&mut self, alpha: &MultiIndex) -> Result<(Vec<Vec<T>>, f64), StencilError> {
+        let mut values = Vec::with_capacity(self.walk.components);
+        self.walk.magnitude = 0.0;
+        for component in 0..self.walk.components {
+            self.walk.monomial = Some((*alpha, component));
+            self.walk.kept.clear();
+            values.push(self.walk.free(&self.operator.root)?.values);
+        }
+        Ok((values, self.walk.magnitude))
+    }
 }
 
 impl<T: Number> Stencil<T> {
@@ -226,11 +242,35 @@ struct Walk<'a, T> {
     bound: Vec<Option<(usize, [T; 3])>>,
     b: HashMap<usize, Tensor<T>>,
     b_hat: HashMap<usize, Tensor<T>>,
-    neighbours: HashMap<usize, Vec<(usize, [T; 3])>>,
+    neighbours: HashMap<usize, Rc<[(usize, [T; 3])]>>,
     least_norm: Vec<usize>,
+    /// The field, if it is a monomial about particle i in one component; else it is left open.
+    monomial: Option<(MultiIndex, usize)>,
+    /// Sums that depend on particle i alone, by the place of their node.
+    kept: HashMap<*const Node, Tensor<T>>,
+    /// With a monomial: the largest sum of magnitudes of any sum over the field.
+    magnitude: f64,
 }
 
-impl<T: Number> Walk<'_, T> {
+impl<'a, T: Number> Walk<'a, T> {
+    fn new(operator: &Operator, ground: &'a dyn Ground<T>, i: usize) -> Self {
+        let mut walk = Walk {
+            ground,
+            dimension: ground.dimension(),
+            components: if operator.field == Field::Vector { ground.dimension() } else { 1 },
+            bound: vec![None; operator.particles.len()],
+            b: HashMap::new(),
+            b_hat: HashMap::new(),
+            neighbours: HashMap::new(),
+            least_norm: Vec::new(),
+            monomial: None,
+            kept: HashMap::new(),
+            magnitude: 0.0,
+        };
+        walk.bound[0] = Some((i, [T::nought(), T::nought(), T::nought()]));
+        walk
+    }
+
     fn bound(&self, p: Particle) -> (usize, [T; 3]) {
         self.bound[p].clone().unwrap_or_else(|| unreachable!("the parser binds every index"))
     }
@@ -255,7 +295,10 @@ impl<T: Number> Walk<'_, T> {
             Kind::Renormalisation(p) => Ok(Value::Free(self.renormalisation(self.bound(*p).0)?)),
             Kind::RenormalisationHat(p) => Ok(Value::Free(self.renormalisation_hat(self.bound(*p).0)?)),
             Kind::OfPair(quantity, p, q) => Ok(Value::Free(self.pair(*quantity, *p, *q)?)),
-            Kind::Field(p) => Ok(Value::Linear(vec![self.field(*p)])),
+            Kind::Field(p) => Ok(match &self.monomial {
+                None => Value::Linear(vec![self.field(*p)]),
+                Some((alpha, component)) => Value::Free(self.monomial_at(*p, alpha, *component)),
+            }),
             Kind::Add(nodes) => {
                 let mut values = nodes.iter().map(|node| self.value(node));
                 let first = values.next().unwrap_or_else(|| unreachable!("a sum has terms"))?;
@@ -286,6 +329,16 @@ impl<T: Number> Walk<'_, T> {
                 })?;
                 Ok(Value::Free(Tensor::from_rows(d, rows)))
             }
+            Kind::Sum { bound, centre, body } if self.monomial.is_some() && of_centre_alone(node) => {
+                if let Some(known) = self.kept.get(&std::ptr::from_ref(node)) {
+                    return Ok(Value::Free(known.clone()));
+                }
+                let value = self.sum(*bound, *centre, body, node)?;
+                if let Value::Free(tensor) = &value {
+                    self.kept.insert(std::ptr::from_ref(node), tensor.clone());
+                }
+                Ok(value)
+            }
             Kind::Sum { bound, centre, body } => self.sum(*bound, *centre, body, node),
         }
     }
@@ -299,21 +352,41 @@ impl<T: Number> Walk<'_, T> {
     ) -> Result<Value<T>, StencilError> {
         let (particle, place) = self.bound(centre);
         let d = self.dimension;
-        let mut total = match node.linear {
+        let mut total = match node.linear && self.monomial.is_none() {
             true => Value::Linear(Vec::new()),
             false => Value::Free(Tensor::zero(d, usize::from(node.rank))),
         };
-        for (neighbour, r) in self.list(particle) {
+        let mut magnitude = 0.0;
+        for (neighbour, r) in self.list(particle).iter() {
             let there = std::array::from_fn(|a| place[a].clone() - r[a].clone());
-            self.bound[bound] = Some((neighbour, there));
-            total = add(total, self.value(body)?);
+            self.bound[bound] = Some((*neighbour, there));
+            let value = self.value(body)?;
+            if let (true, Value::Free(tensor)) = (node.linear, &value) {
+                magnitude += tensor.values.iter().map(T::size).fold(0.0, f64::max);
+            }
+            total = add(total, value);
         }
+        self.magnitude = self.magnitude.max(magnitude);
         self.bound[bound] = None;
         Ok(total)
     }
 
-    fn list(&mut self, particle: usize) -> Vec<(usize, [T; 3])> {
-        self.neighbours.entry(particle).or_insert_with(|| self.ground.neighbours(particle)).clone()
+    fn list(&mut self, particle: usize) -> Rc<[(usize, [T; 3])]> {
+        self.neighbours.entry(particle).or_insert_with(|| self.ground.neighbours(particle).into()).clone()
+    }
+
+    fn monomial_at(&self, p: Particle, alpha: &MultiIndex, component: usize) -> Tensor<T> {
+        let (_, place) = self.bound(p);
+        let factorial = Rational::from_integer(alpha.factorial().into());
+        let value = monomial(&place, alpha) * T::from_rational(&(int(1) / factorial));
+        match self.components {
+            1 => Tensor::scalar(self.dimension, value),
+            _ => {
+                let mut vector: [T; 3] = std::array::from_fn(|_| T::nought());
+                vector[component] = value;
+                Tensor::vector(self.dimension, &vector)
+            }
+        }
     }
 
     /// 1/x^n. What divides by the distance of a particle from itself is left out of its sum: zero.
@@ -391,11 +464,12 @@ impl<T: Number> Walk<'_, T> {
     ) -> Result<Tensor<T>, StencilError> {
         let d = self.dimension;
         let mut sum = Tensor::zero(d, rank);
-        for (neighbour, r) in self.list(particle) {
+        for (neighbour, r) in self.list(particle).iter() {
+            let neighbour = *neighbour;
             let volume = self.ground.of_particle(crate::language::tree::OfParticle::Volume, neighbour)?;
-            let kernel = self.ground.kernel(particle, neighbour, &r);
+            let kernel = self.ground.kernel(particle, neighbour, r);
             let square = r.iter().fold(T::nought(), |sum, x| sum + x.clone() * x.clone());
-            if let Some(term) = summand(&Tensor::vector(d, &r), kernel, square) {
+            if let Some(term) = summand(&Tensor::vector(d, r), kernel, square) {
                 sum = sum.plus(&term.scaled(&volume));
             }
         }
@@ -495,6 +569,25 @@ impl<T: Number> Walk<'_, T> {
             _ => Degeneracy::Unsolvable { rank },
         }
     }
+}
+
+/// Whether a sum depends on particle i and on what it binds itself, and on nothing else.
+fn of_centre_alone(node: &Node) -> bool {
+    fn free_of_others(node: &Node, own: &mut Vec<Particle>) -> bool {
+        let known = |p: &Particle| *p == 0 || own.contains(p);
+        let named = match &node.kind {
+            Kind::Field(p) | Kind::OfParticle(_, p) | Kind::Renormalisation(p) | Kind::RenormalisationHat(p) => known(p),
+            Kind::OfPair(_, p, q) => known(p) && known(q),
+            Kind::Sum { bound, centre, .. } => {
+                let known = known(centre);
+                own.push(*bound);
+                known
+            }
+            _ => true,
+        };
+        named && node.children().into_iter().all(|child| free_of_others(child, own))
+    }
+    free_of_others(node, &mut Vec::new())
 }
 
 fn add<T: Number>(a: Value<T>, b: Value<T>) -> Value<T> {

@@ -3,8 +3,8 @@
 use super::record::*;
 use crate::claim::{Measured, Statement};
 use crate::exact::rational_text;
+use crate::language::Subject;
 use crate::study::{CaseId, JudgedCase, LadderFit, MeasuredColumn, Outcome, Varies};
-use std::collections::BTreeMap;
 
 /// Significant digits of fitted numbers: what passes through statrs is the same on every machine to that many.
 const DIGITS: usize = 8;
@@ -75,7 +75,7 @@ fn entry(judged: &JudgedCase, margin: f64) -> ClaimEntry {
     let measured = match &judged.measured {
         MeasuredColumn::Exponents { displacement, dx_over_h, fits } => {
             let disordered = judged.case.disorder.is_some();
-            let power = f64::from(claim.moment.length_power());
+            let power = f64::from(claim.subject.length_power());
             let h = Estimate::float(
                 significant(power - displacement.value, DIGITS),
                 significant(power - displacement.high, DIGITS),
@@ -91,7 +91,7 @@ fn entry(judged: &JudgedCase, margin: f64) -> ClaimEntry {
                 h: Some(if disordered {
                     h
                 } else {
-                    Estimate::exact(claim.moment.length_power().to_string(), Source::Identity)
+                    Estimate::exact(claim.subject.length_power().to_string(), Source::Identity)
                 }),
                 dx_over_h: Some(fitted(*dx_over_h)),
                 ..Exponents::default()
@@ -115,7 +115,7 @@ fn entry(judged: &JudgedCase, margin: f64) -> ClaimEntry {
         kind,
         citation: Citation { source: claim.source.clone(), location: claim.location.clone() },
         statement: claim.text.clone(),
-        case: case(&judged.case),
+        case: case(&judged.case, &claim.subject),
         published: Some(published),
         derived: None,
         measured,
@@ -130,7 +130,11 @@ fn fitted(measured: Measured) -> Estimate {
     Estimate::float(round(measured.value), round(measured.low), round(measured.high), Source::Fit)
 }
 
-fn case(case: &CaseId) -> Case {
+fn case(case: &CaseId, subject: &Subject) -> Case {
+    let of_operator = subject.coefficient().map(|coefficient| {
+        [("operator", coefficient.id().into()), ("order", coefficient.order().into())]
+    });
+    let more = of_operator.into_iter().flatten().map(|(name, value)| (name.to_owned(), value));
     Case {
         source: "lattice".into(),
         dimension: case.dimension as u8,
@@ -138,7 +142,7 @@ fn case(case: &CaseId) -> Case {
         lattice: Some(case.lattice.clone()),
         disorder: Some(case.disorder.as_ref().map_or("none".into(), ToString::to_string)),
         volume_rule: case.rule.to_string(),
-        more: BTreeMap::new(),
+        more: more.collect(),
     }
 }
 
@@ -171,16 +175,16 @@ fn fit(ladder: &LadderFit) -> Option<Fit> {
         Varies::DxOverH => "Δ/h",
         Varies::Displacement => "d̃/h",
     };
-    let power = ladder.moment.length_power();
+    let power = ladder.subject.length_power();
     let unit = if power == 0 { "1".to_owned() } else { format!("h^{power}") };
     Some(Fit {
         id: ladder.id.clone(),
-        quantity: ladder.quantity.formula(ladder.moment),
-        case: case(&ladder.case),
+        quantity: ladder.quantity.formula(&ladder.subject),
+        case: case(&ladder.case, &ladder.subject),
         varies: ladder.varies.id().into(),
         held: ladder.held.iter().cloned().collect(),
         x: Axis { name: abscissa.into(), unit: "1".into(), log: true },
-        y: Axis { name: ladder.quantity.formula(ladder.moment), unit, log: true },
+        y: Axis { name: ladder.quantity.formula(&ladder.subject), unit, log: true },
         points,
         slope: estimate(law.slope),
         intercept: estimate(law.intercept),

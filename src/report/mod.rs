@@ -4,6 +4,7 @@ mod assemble;
 mod expansion;
 mod layout;
 mod markdown;
+mod printed;
 mod record;
 mod table;
 mod write;
@@ -14,6 +15,7 @@ pub use expansion::{
 };
 pub use layout::to_json;
 pub use markdown::markdown;
+pub use printed::{PrintedError, PrintedVerdict, printed_markdown, printed_verdicts};
 pub use record::*;
 pub use table::{Row, Section, sections};
 pub use write::{WriteError, check_target, write_report};

@@ -1,8 +1,7 @@
 //! What can go wrong in a study.
 
 use super::source::SceneError;
-use crate::measured::SampleError;
-use crate::sums::SumError;
+use crate::measured::{RegularError, SampleError};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -23,13 +22,13 @@ pub enum StudyError {
         /// `limits.most_pairs`.
         allowed: u64,
     },
-    /// A lattice sum could not be taken.
+    /// A rung of regular particles could not be taken.
     #[error("{task}: {source}")]
-    Sum {
+    Regular {
         /// The task.
         task: String,
         /// Why.
-        source: SumError,
+        source: RegularError,
     },
     /// A sample could not be taken.
     #[error("{task}: {source}")]

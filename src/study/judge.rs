@@ -10,7 +10,6 @@ use crate::claim::{
 };
 use crate::exact::rational_to_f64;
 use crate::particles::{Disorder, PointGroup};
-use crate::sums::Reduction;
 
 /// Fits the ladders that the claims need, and judges every claim in every case.
 pub(super) fn judge(scene: &Scene, plan: &Plan, results: &[TaskResult]) -> Outcome {
@@ -21,7 +20,7 @@ pub(super) fn judge(scene: &Scene, plan: &Plan, results: &[TaskResult]) -> Outco
             if !claims_in(scene, lattice.dimension()).iter().any(|known| known.id == claim.id) {
                 continue;
             }
-            let vanishes = Reduction::of(claim.moment, lattice, &PointGroup::of(lattice)).vanishes();
+            let vanishes = claim.subject.vanishes(lattice, &PointGroup::of(lattice));
             let disorders: Vec<Option<&Disorder>> = match &claim.statement {
                 Statement::PowerLaw { quantity, .. } if quantity.is_disordered() => {
                     disorders.iter().map(Some).collect()
@@ -173,7 +172,7 @@ impl Bench<'_> {
     /// The fit, made once.
     fn fit(&mut self, claim: &Claim, case: &CaseId, quantity: Quantity, varies: Varies) -> Option<LadderFit> {
         let known = self.fits.iter().find(|fit| {
-            fit.moment == claim.moment
+            fit.subject == claim.subject
                 && fit.quantity == quantity
                 && fit.varies == varies
                 && fit.case == *case
@@ -183,7 +182,7 @@ impl Bench<'_> {
         }
         let ladder =
             self.plan.ladders.iter().find(|ladder| ladder.case == *case && ladder.varies == varies)?;
-        let fit = fit_ladder(self.plan, ladder, self.results, claim.moment, quantity)?;
+        let fit = fit_ladder(self.plan, ladder, self.results, &claim.subject, quantity)?;
         self.fits.push(fit.clone());
         Some(fit)
     }

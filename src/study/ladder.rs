@@ -7,17 +7,17 @@ use crate::claim::Quantity;
 use crate::kernel::Kernel;
 use crate::measured::summarise;
 use crate::measured::window::{LadderPoint, WindowOptions, power_law};
-use crate::sums::Moment;
+use crate::language::Subject;
 
 /// The ladder of one quantity, fitted.
 pub(super) fn fit_ladder(
     plan: &Plan,
     ladder: &LadderPlan,
     results: &[TaskResult],
-    moment: Moment,
+    subject: &Subject,
     quantity: Quantity,
 ) -> Option<LadderFit> {
-    let index = ladder.moments.iter().position(|known| *known == moment)?;
+    let index = ladder.subjects.iter().position(|known| known == subject)?;
     let mut rungs: Vec<Rung> = ladder
         .rungs
         .iter()
@@ -39,16 +39,16 @@ pub(super) fn fit_ladder(
         })
         .collect();
     let fit = power_law(&points, &WindowOptions::default()).map_err(|error| error.to_string());
-    let id = format!("{}/{}/{}/{}", moment.name(), quantity.id(), ladder.case.path(), ladder.varies.id());
+    let id = format!("{}/{}/{}/{}", subject.name(), quantity.id(), ladder.case.path(), ladder.varies.id());
     let mut held = held(&ladder.case, ladder.varies, &rungs);
-    if quantity == Quantity::RegularDeviation {
+    if quantity == Quantity::RegularDeviation && subject.moment().is_some() {
         let kernel = ladder.rungs.iter().flatten().next().map(|task| plan.tasks[*task].kernel());
         held.extend(kernel.and_then(Kernel::remark).map(|remark| ("kernel".to_owned(), remark)));
     }
     Some(LadderFit {
         id,
         case: ladder.case.clone(),
-        moment,
+        subject: subject.clone(),
         quantity,
         varies: ladder.varies,
         held,
@@ -61,7 +61,7 @@ fn points_of(
     plan: &Plan,
     task: usize,
     results: &[TaskResult],
-    moment: usize,
+    subject: usize,
     quantity: Quantity,
     ladder: &LadderPlan,
 ) -> Vec<Rung> {
@@ -72,7 +72,7 @@ fn points_of(
             .iter()
             .zip(&rung.norms)
             .map(|(support, norms)| {
-                let norm = norms[moment];
+                let norm = norms[subject];
                 let y = if quantity == Quantity::RegularValue { norm.value } else { norm.deviation };
                 Rung {
                     x: kappa / support,
@@ -87,7 +87,7 @@ fn points_of(
             })
             .collect(),
         (Task::Samples { spec, .. }, TaskResult::Samples { blocks, floors }) => {
-            let summary = summarise(blocks, moment);
+            let summary = summarise(blocks, subject);
             let dx_over_h = kappa / spec.support_over_dx;
             let x = match ladder.varies {
                 Varies::DxOverH => dx_over_h,
@@ -97,7 +97,7 @@ fn points_of(
                 x,
                 y: summary.rms,
                 y_error: Some(summary.rms_error),
-                floor: floors[moment],
+                floor: floors[subject],
                 mean: Some(summary.mean),
                 max: Some(summary.max),
                 samples: Some(summary.samples),

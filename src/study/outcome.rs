@@ -7,7 +7,7 @@ use crate::exact::rational_to_f64;
 use crate::kernel::Kernel;
 use crate::measured::window::{PowerLaw, Reason};
 use crate::particles::{Disorder, Lattice, VolumeRule};
-use crate::sums::Moment;
+use crate::language::Subject;
 
 /// What tells one case from another.
 #[derive(Debug, Clone, PartialEq)]
@@ -100,8 +100,8 @@ pub struct LadderFit {
     pub id: String,
     /// For what.
     pub case: CaseId,
-    /// The moment sum.
-    pub moment: Moment,
+    /// The moment sum or coefficient.
+    pub subject: Subject,
     /// What was made of it.
     pub quantity: Quantity,
     /// What the ladder varies.
@@ -134,9 +134,9 @@ pub enum MeasuredColumn {
         /// Ids of the fits.
         fits: Vec<String>,
     },
-    /// The moment vanishes by symmetry.
+    /// It vanishes by symmetry.
     ZeroBySymmetry,
-    /// The moment does not vanish; its largest norm in units of h.
+    /// It does not vanish; its largest norm in units of h.
     NotZero(f64),
     /// No number; the verdict says why.
     Nothing {

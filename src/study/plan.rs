@@ -11,6 +11,7 @@ use crate::exact::{Rational, rational_text, rational_to_f64};
 use crate::kernel::Kernel;
 use crate::measured::{RegularSpec, SampleSpec};
 use crate::particles::{Disorder, Lattice, Moves, PointGroup, SiteIndex, VolumeRule};
+use crate::language::Subject;
 use crate::sums::{Moment, Reduction};
 use itertools::Itertools;
 use serde::Serialize;
@@ -39,7 +40,7 @@ pub enum Task {
 pub(super) struct LadderPlan {
     pub case: CaseId,
     pub varies: Varies,
-    pub moments: Vec<Moment>,
+    pub subjects: Vec<Subject>,
     /// Indices of tasks by rung; several where an envelope is taken.
     pub rungs: Vec<Vec<usize>>,
 }
@@ -99,8 +100,8 @@ impl Plan {
         let lattices = scene.lattices().map(|lattice| (lattice, PointGroup::of(lattice))).collect_vec();
         for (lattice, group) in &lattices {
             let claims = claims_in(scene, lattice.dimension());
-            let regular = regular_moments(&claims, lattice, group);
-            let disordered = disordered_moments(&claims);
+            let regular = regular_subjects(&claims, lattice, group);
+            let disordered = disordered_subjects(&claims);
             for cases in scene.cases.iter().filter(|cases| cases.lattice.id() == lattice.id()) {
                 plan.add_regular(scene, &cases.kernel, lattice, group, cases.rule, &regular);
                 for disorder in cases.disorders.iter().filter(|_| !disordered.is_empty()) {
@@ -126,13 +127,13 @@ impl Plan {
         lattice: &Lattice,
         group: &PointGroup,
         rule: VolumeRule,
-        moments: &[Moment],
+        subjects: &[Subject],
     ) {
-        if moments.is_empty() {
+        if subjects.is_empty() {
             return;
         }
         let free: usize =
-            moments.iter().map(|moment| Reduction::of(*moment, lattice, group).free().len()).sum();
+            subjects.iter().filter_map(Subject::moment).map(|m| Reduction::of(m, lattice, group).free().len()).sum();
         let mut rungs = Vec::new();
         for supports in scene.regular_ladder(lattice.dimension(), kernel) {
             self.exact_sums += (free * supports.len()) as u64;
@@ -141,13 +142,13 @@ impl Plan {
                 kernel: kernel.clone(),
                 lattice: lattice.clone(),
                 rule,
-                moments: moments.to_vec(),
+                subjects: subjects.to_vec(),
                 supports,
                 memory_mib: scene.raw.limits.memory_mib,
             }));
         }
         let case = CaseId::new(kernel, lattice, None, rule);
-        self.ladders.push(LadderPlan { case, varies: Varies::DxOverH, moments: moments.to_vec(), rungs });
+        self.ladders.push(LadderPlan { case, varies: Varies::DxOverH, subjects: subjects.to_vec(), rungs });
     }
 
     fn add_disordered(
@@ -157,7 +158,7 @@ impl Plan {
         lattice: &Lattice,
         rule: VolumeRule,
         disorder: &Disorder,
-        moments: &[Moment],
+        subjects: &[Subject],
     ) {
         let dimension = lattice.dimension();
         let case = CaseId::new(kernel, lattice, Some(disorder), rule);
@@ -169,7 +170,7 @@ impl Plan {
                 amplitude,
                 support_over_dx: rational_to_f64(support),
                 rule,
-                moments: moments.to_vec(),
+                subjects: subjects.to_vec(),
                 seed: scene.raw.study.seed,
             };
             self.tasks.push(Task::Samples { spec, support: support.clone() });
@@ -187,14 +188,14 @@ impl Plan {
         let (support, factors) = scene.displacement_ladder(dimension);
         let heights =
             factors.iter().map(|factor| vec![push(&support, disorder.amplitude() * factor)]).collect_vec();
-        let moments = moments.to_vec();
+        let subjects = subjects.to_vec();
         self.ladders.push(LadderPlan {
             case: case.clone(),
             varies: Varies::DxOverH,
-            moments: moments.clone(),
+            subjects: subjects.clone(),
             rungs,
         });
-        self.ladders.push(LadderPlan { case, varies: Varies::Displacement, moments, rungs: heights });
+        self.ladders.push(LadderPlan { case, varies: Varies::Displacement, subjects, rungs: heights });
     }
 }
 
@@ -252,14 +253,14 @@ impl Task {
             vectors: Vec<SiteIndex>,
             basis: Vec<SiteIndex>,
             rule: VolumeRule,
-            moments: Vec<Moment>,
+            moments: Vec<String>,
             supports: Vec<String>,
             disorder: Option<(String, f64, u64)>,
         }
-        let (kernel, lattice, rule, moments) = match self {
-            Self::Regular(spec) => (spec.kernel.canonical_profile(), &spec.lattice, spec.rule, &spec.moments),
+        let (kernel, lattice, rule, subjects) = match self {
+            Self::Regular(spec) => (spec.kernel.canonical_profile(), &spec.lattice, spec.rule, &spec.subjects),
             Self::Samples { spec, .. } => {
-                (spec.kernel.canonical_profile(), &spec.lattice, spec.rule, &spec.moments)
+                (spec.kernel.canonical_profile(), &spec.lattice, spec.rule, &spec.subjects)
             }
         };
         let (supports, disorder) = match self {
@@ -277,7 +278,7 @@ impl Task {
             vectors: lattice.vectors().to_vec(),
             basis: lattice.basis().to_vec(),
             rule,
-            moments: moments.clone(),
+            moments: subjects.iter().map(Subject::name).collect(),
             supports,
             disorder,
         };
@@ -305,28 +306,28 @@ pub(super) fn claims_in(scene: &Scene, dimension: usize) -> Vec<Claim> {
     scene.claims.iter().filter(|claim| claim.dimensions.contains(&dimension)).cloned().collect()
 }
 
-/// The moments whose regular sums some claim needs and symmetry does not settle.
-fn regular_moments(claims: &[Claim], lattice: &Lattice, group: &PointGroup) -> Vec<Moment> {
+/// What some claim needs on regular particles and symmetry does not settle.
+fn regular_subjects(claims: &[Claim], lattice: &Lattice, group: &PointGroup) -> Vec<Subject> {
     let needs = |claim: &&Claim| match &claim.statement {
         Statement::PowerLaw { quantity, .. } => !quantity.is_disordered(),
         Statement::Zero => true,
     };
-    let asked = claims.iter().filter(needs).map(|claim| claim.moment).sorted().dedup();
-    asked.filter(|moment| !Reduction::of(*moment, lattice, group).vanishes()).collect()
+    let asked = claims.iter().filter(needs).map(|claim| claim.subject.clone()).sorted().dedup();
+    asked.filter(|subject| !subject.vanishes(lattice, group)).collect()
 }
 
-fn disordered_moments(claims: &[Claim]) -> Vec<Moment> {
+fn disordered_subjects(claims: &[Claim]) -> Vec<Subject> {
     let needs = |claim: &&Claim| {
         matches!(claim.statement, Statement::PowerLaw { quantity: Quantity::DisorderDeviation, .. })
     };
-    claims.iter().filter(needs).map(|claim| claim.moment).sorted().dedup().collect()
+    claims.iter().filter(needs).map(|claim| claim.subject.clone()).sorted().dedup().collect()
 }
 
 fn omissions(scene: &Scene, lattices: &[(&Lattice, PointGroup)]) -> Vec<Omission> {
     let mut omissions = Vec::new();
     for (lattice, group) in lattices {
         let claims = claims_in(scene, lattice.dimension());
-        for moment in regular_moments(&claims, lattice, group) {
+        for moment in regular_subjects(&claims, lattice, group).iter().filter_map(Subject::moment) {
             let reduction = Reduction::of(moment, lattice, group);
             let (zero, equal) = reduction.left_out();
             if zero + equal > 0 {
@@ -346,16 +347,17 @@ fn omissions(scene: &Scene, lattices: &[(&Lattice, PointGroup)]) -> Vec<Omission
         }
         for claim in claims
             .iter()
-            .filter(|claim| needs_regular(claim) && Reduction::of(claim.moment, lattice, group).vanishes())
+            .filter(|claim| needs_regular(claim) && claim.subject.vanishes(lattice, group))
         {
             omissions.push(Omission {
-                what: format!("{} on regular {}", claim.moment, lattice.id()),
+                what: format!("{} on regular {}", claim.subject, lattice.id()),
                 why: "vanishes by the symmetry of the site".into(),
                 saved: Some("its whole ladder".into()),
             });
         }
     }
-    let asked: Vec<Moment> = scene.claims.iter().map(|claim| claim.moment).sorted().dedup().collect();
+    let asked: Vec<Moment> =
+        scene.claims.iter().filter_map(|claim| claim.subject.moment()).sorted().dedup().collect();
     let not_asked =
         Moment::all(4).into_iter().filter(|moment| !asked.contains(moment)).map(Moment::name).collect_vec();
     if !not_asked.is_empty() {

@@ -117,7 +117,7 @@ fn is_rung_of(rung: &RegularRung, spec: &RegularSpec) -> bool {
     rung.supports.len() == supports
         && rung.in_support.len() == supports
         && rung.norms.len() == supports
-        && rung.norms.iter().all(|norms| norms.len() == spec.moments.len())
+        && rung.norms.iter().all(|norms| norms.len() == spec.subjects.len())
 }
 
 /// All blocks of a task; `None` if some are missing and nothing may be computed.
@@ -145,7 +145,7 @@ fn run_task(scene: &Scene, task: &Task, options: &RunOptions<'_>) -> Result<Opti
                     stop_if_asked()?;
                     let group = PointGroup::of(&spec.lattice);
                     let rung = regular_rung(spec, &group)
-                        .map_err(|source| StudyError::Sum { task: task.label(), source })?;
+                        .map_err(|source| StudyError::Regular { task: task.label(), source })?;
                     options.store.save(&key, 0, &rung)?;
                     rung
                 }
@@ -168,7 +168,7 @@ fn run_task(scene: &Scene, task: &Task, options: &RunOptions<'_>) -> Result<Opti
                     options.store.load(&key, number, |block: &SampleBlock| {
                         block.samples == size
                             && block.degenerate <= size
-                            && block.moments.len() == spec.moments.len()
+                            && block.moments.len() == spec.subjects.len()
                     })?;
                 let was_stored = stored.is_some();
                 let block = match stored {

@@ -2,9 +2,10 @@
 
 use super::define_lattice;
 use super::source::{SceneError, SceneText};
-use super::tables::{CasesTable, DefineTable, DxLadder, RawScene};
+use super::tables::{CasesTable, DefineTable, DxLadder, OwnClaim, RawScene};
 use crate::claim::{self, BetaExponent, Claim, Powers, Quantity, Statement};
 use crate::exact::{Rational, int, ratio, rational_from_decimal, rational_to_f64};
+use crate::language::{Coefficient, Subject};
 use crate::kernel::{Kernel, KernelDefinition, by_id_among};
 use crate::measured::neighbourhood_radius;
 use crate::particles::{Disorder, Lattice, Moves, VolumeRule, lattice_among};
@@ -85,9 +86,10 @@ impl Scene {
     }
 
     fn resolve(raw: RawScene, text: &SceneText, name: &str, quick: bool) -> Result<Self, SceneError> {
-        if raw.study.kind != "moment-orders" {
+        if !["moment-orders", "operator-orders"].contains(&raw.study.kind.as_str()) {
             let message = format!("there is no study of kind '{}'", raw.study.kind);
-            return Err(text.error_at("study.kind", message, Some("write kind = \"moment-orders\"")));
+            let help = "write kind = \"moment-orders\", or \"operator-orders\"";
+            return Err(text.error_at("study.kind", message, Some(help)));
         }
         let at = |keys: String, message: String| text.error_at(&keys, message, None);
         let own = own_kernels(&raw.define, text)?;
@@ -111,6 +113,17 @@ impl Scene {
             ));
         }
         let lattices = cases.iter().map(|group| &group.lattice).unique_by(|lattice| lattice.id());
+        // Samples hold the neighbours of i, and no more.
+        let nested = |claim: &&Claim| {
+            disordered(claim) && claim.subject.coefficient().is_some_and(Coefficient::is_nested)
+        };
+        if let Some(claim) = claims.iter().find(nested) {
+            let message = format!(
+                "'{}' needs disordered neighbours of neighbours, which samples do not hold: ask for its regular orders",
+                claim.id
+            );
+            return Err(at("claims".into(), message));
+        }
         check_numbers(&raw, &lattices.collect_vec(), at)?;
         let canonical = serde_json::to_string(&raw).map_err(|error| text.error(error.to_string()))?;
         let sha256 = Sha256::digest(canonical.as_bytes()).iter().fold(String::new(), |mut hex, byte| {
@@ -419,7 +432,7 @@ fn resolve_claims(
     }
     for (index, own) in raw.claims.own.iter().enumerate() {
         let place = |field: &str| format!("claims.own.{index}.{field}");
-        let moment = Moment::by_name(&own.moment).map_err(|error| at(place("moment"), error.to_string()))?;
+        let subject = own_subject(own, place, &at)?;
         let quantity = Quantity::by_id(&own.quantity).ok_or_else(|| {
             let message = format!(
                 "there is no quantity '{}': write regular-value, regular-deviation or disorder-deviation",
@@ -433,13 +446,13 @@ fn resolve_claims(
         }
         let powers = Powers::parse(&own.displacement, &own.h, &own.dx_over_h)
             .map_err(|error| at(place("dx_over_h"), error.to_string()))?;
-        powers.check(moment).map_err(|error| at(place("h"), error.to_string()))?;
+        powers.check(&subject).map_err(|error| at(place("h"), error.to_string()))?;
         claims.push(Claim {
             id: format!("own/{}", own.name),
             source: "scene".into(),
             location: format!("[[claims.own]] {}", index + 1),
-            text: format!("{} = {powers}", quantity.formula(moment)),
-            moment,
+            text: format!("{} = {powers}", quantity.formula(&subject)),
+            subject,
             statement: Statement::PowerLaw { quantity, powers: Box::new(powers) },
             dimensions: &[1, 2, 3],
         });
@@ -449,6 +462,33 @@ fn resolve_claims(
     }
     Ok(claims)
 }
+
+/// What a claim of one's own is about.
+fn own_subject(
+    own: &OwnClaim,
+    place: impl Fn(&str) -> String,
+    at: impl Fn(String, String) -> SceneError,
+) -> Result<Subject, SceneError> {
+    let Some(operator) = &own.operator else {
+        let moment = Moment::by_name(&own.moment).map_err(|error| at(place("moment"), error.to_string()))?;
+        return Ok(Subject::Moment(moment));
+    };
+    if !own.moment.is_empty() {
+        return Err(at(place("operator"), "a claim is about a moment or an operator, not about both".into()));
+    }
+    let Some(order) = own.order.filter(|order| usize::from(*order) <= MOST_ORDER) else {
+        let message = format!("an operator's claim needs order = 0 to {MOST_ORDER}: which ∇^m u it is about");
+        return Err(at(place(if own.order.is_some() { "order" } else { "operator" }), message));
+    };
+    let coefficient = Coefficient::new(operator, order).map_err(|error| {
+        let shown = operator.get(error.span.clone()).unwrap_or_default();
+        at(place("operator"), format!("{error} (at byte {}: '{shown}')", error.span.start + 1))
+    })?;
+    Ok(Subject::Coefficient(coefficient))
+}
+
+/// The highest order of a coefficient in a claim.
+const MOST_ORDER: usize = 8;
 
 /// Memory per lattice site, for estimates before anything is laid.
 const MIB_PER_SITE: f64 = 400.0 / (1_u64 << 20) as f64;

@@ -47,7 +47,8 @@ pub struct RawScene {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StudyTable {
-    /// `moment-orders`: exponents of moment sums.
+    /// `moment-orders`: exponents of moment sums; `operator-orders`: of the coefficients of operators' expansions. A scene
+    /// of either kind may hold claims of both.
     pub kind: String,
     /// A title for the report.
     pub title: String,
@@ -183,8 +184,15 @@ impl Default for ClaimsTable {
 pub struct OwnClaim {
     /// A name; it appears as `own/NAME`.
     pub name: String,
-    /// A moment sum: `sum_dw`, `b_inverse`, ….
+    /// A moment sum: `sum_dw`, `b_inverse`, …; or `operator` and `order` in its place.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub moment: String,
+    /// An operator, by its id or as text in the language.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub operator: Option<String>,
+    /// m: the claim is about what the operator's expansion multiplies ∇^m u by.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub order: Option<u8>,
     /// `regular-value`, `regular-deviation` or `disorder-deviation`.
     pub quantity: String,
     /// Exponent of d̃, a rational in beta.
