@@ -11,6 +11,8 @@ mod bad_files;
 mod bad_scenes;
 #[path = "cli/exit_codes.rs"]
 mod exit_codes;
+#[path = "cli/expand.rs"]
+mod expand;
 #[path = "cli/folder.rs"]
 mod folder;
 #[path = "cli/interruptions.rs"]

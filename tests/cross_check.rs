@@ -10,6 +10,7 @@ use remainder::exact::{
     Coefficient, Enclosure, Rational, Truth, int, parse_rational, ratio, rational_to_f64,
 };
 use remainder::kernel::{self, Evaluator, Kernel};
+use remainder::language::Subject;
 use remainder::measured::{SampleBlock, SampleSpec, Sampler, summarise};
 use remainder::particles::{
     Disorder, Draw, Lattice, Moves, PointGroup, SampleStream, Site, VolumeRule, lattice, lattice_by_id,
@@ -558,7 +559,7 @@ fn spec(
         disorder,
         support_over_dx,
         rule,
-        moments: moments.iter().map(|name| moment(name)).collect(),
+        subjects: moments.iter().map(|name| Subject::Moment(moment(name))).collect(),
         seed: 2011,
     }
 }

@@ -130,6 +130,19 @@ fn the_corpus_is_read_or_refused_as_its_file_says() {
     }
 }
 
+/// Every example of the grammar's page is an operator, and every operator that a scene may name is told of there.
+#[test]
+fn the_examples_of_the_grammar_are_read() {
+    let page = std::fs::read_to_string(format!("{}/docs/operators.md", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let examples: Vec<&str> =
+        page.split("```operator\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
+    assert!(examples.len() >= 10, "{}", examples.len());
+    for example in examples {
+        let text = example.split_whitespace().collect::<Vec<_>>().join(" ");
+        Operator::parse(&text).unwrap_or_else(|error| panic!("{text}: {error:?}"));
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 3000, ..ProptestConfig::default() })]
 

@@ -8,6 +8,7 @@
 use num_traits::{One, Zero};
 use remainder::exact::{Coefficient, MultiIndex, Radical, Rational, int, ratio, rational_to_f64};
 use remainder::kernel::{self, Kernel};
+use remainder::language::Subject;
 use remainder::measured::window::{LadderPoint, PowerLaw, WindowOptions, power_law};
 use remainder::measured::{RegularNorm, RegularRung, RegularSpec, regular_rung};
 use remainder::particles::{PointGroup, VolumeRule, lattice_by_id};
@@ -290,7 +291,7 @@ impl Envelope {
                 kernel: kernel(id),
                 lattice: lattice.clone(),
                 rule: VolumeRule::Constant,
-                moments: ENVELOPES.iter().map(|(name, _, _)| moment(name)).collect(),
+                subjects: ENVELOPES.iter().map(|(name, _, _)| Subject::Moment(moment(name))).collect(),
                 supports: (0..OFFSETS).map(|n| ratio(8 * rung + n, 8)).collect(),
                 memory_mib: MEMORY_MIB,
             };

@@ -213,8 +213,16 @@ const POWER_LAWS: &[Row] = &[
 ];
 
 /// id, where, operator, order m of ∇^m u, quantity, exponents of d̃, h and Δ/h, text, dimensions.
-type OperatorRow =
-    (&'static str, &'static str, &'static str, u8, Quantity, [&'static str; 3], &'static str, &'static [usize]);
+type OperatorRow = (
+    &'static str,
+    &'static str,
+    &'static str,
+    u8,
+    Quantity,
+    [&'static str; 3],
+    &'static str,
+    &'static [usize],
+);
 
 /// Tables 1 and 3, what the text adds to them, and Eqs. (42), (49), (50).
 const OPERATORS: &[OperatorRow] = &[
@@ -417,9 +425,8 @@ const ZEROS: &[(&str, &str, &str, &str)] = &[
 ];
 
 pub(super) fn claims() -> Vec<Claim> {
-    let moment = |name: &str| {
-        Subject::Moment(Moment::by_name(name).unwrap_or_else(|error| unreachable!("{error}")))
-    };
+    let moment =
+        |name: &str| Subject::Moment(Moment::by_name(name).unwrap_or_else(|error| unreachable!("{error}")));
     let power_laws = POWER_LAWS.iter().map(|(id, location, name, quantity, [d, h, x], text, dimensions)| {
         let mut powers = Powers::parse(d, h, x).unwrap_or_else(|error| unreachable!("{error}"));
         if id.starts_with("fatehi-eq-32/") {
@@ -444,19 +451,20 @@ pub(super) fn claims() -> Vec<Claim> {
         statement: Statement::Zero,
         dimensions: ALL,
     });
-    let operators = OPERATORS.iter().map(|(id, location, name, order, quantity, [d, h, x], text, dimensions)| {
-        let coefficient = Coefficient::new(name, *order).unwrap_or_else(|error| unreachable!("{error}"));
-        let powers = Powers::parse(d, h, x).unwrap_or_else(|error| unreachable!("{error}"));
-        Claim {
-            id: (*id).into(),
-            source: SOURCE.into(),
-            location: (*location).into(),
-            text: (*text).into(),
-            subject: Subject::Coefficient(coefficient),
-            statement: Statement::PowerLaw { quantity: *quantity, powers: Box::new(powers) },
-            dimensions,
-        }
-    });
+    let operators =
+        OPERATORS.iter().map(|(id, location, name, order, quantity, [d, h, x], text, dimensions)| {
+            let coefficient = Coefficient::new(name, *order).unwrap_or_else(|error| unreachable!("{error}"));
+            let powers = Powers::parse(d, h, x).unwrap_or_else(|error| unreachable!("{error}"));
+            Claim {
+                id: (*id).into(),
+                source: SOURCE.into(),
+                location: (*location).into(),
+                text: (*text).into(),
+                subject: Subject::Coefficient(coefficient),
+                statement: Statement::PowerLaw { quantity: *quantity, powers: Box::new(powers) },
+                dimensions,
+            }
+        });
     power_laws.chain(zeros).chain(operators).collect()
 }
 

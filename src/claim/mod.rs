@@ -19,8 +19,8 @@ pub use printed::{PrintedCoefficient, printed_coefficients};
 pub use rollup::{CaseVerdict, roll_up};
 pub use verdict::Verdict;
 
-use crate::names::nearest;
 use crate::language::Subject;
+use crate::names::nearest;
 
 /// What is made of a moment sum or a coefficient S.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

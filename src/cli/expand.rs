@@ -33,7 +33,9 @@ pub(super) fn expand(arguments: &ExpandArguments) -> Result<Exit, Failure> {
         return Ok(Exit::AsExpected);
     }
     let Some(named) = &arguments.operator else {
-        return Err(Failure::Arguments("name an operator, or give its text; `remainder list operators` names all".into()));
+        return Err(Failure::Arguments(
+            "name an operator, or give its text; `remainder list operators` names all".into(),
+        ));
     };
     let report = match operators::by_id(named) {
         Ok(entry) => {
@@ -45,8 +47,7 @@ pub(super) fn expand(arguments: &ExpandArguments) -> Result<Exit, Failure> {
             return Err(fault(&unknown));
         }
         Err(_) => {
-            let operator =
-                Operator::parse(named).map_err(|error| Failure::Operator(named.clone(), error))?;
+            let operator = Operator::parse(named).map_err(|error| Failure::Operator(named.clone(), error))?;
             report(None, operator)?
         }
     };

@@ -78,9 +78,8 @@ impl<T: Number> Ground<T> for Arrangement {
     }
 
     fn neighbours(&self, p: usize) -> Vec<(usize, [T; 3])> {
-        let separation = |q: usize| {
-            std::array::from_fn(|a| T::from_rational(&(&self.places[p][a] - &self.places[q][a])))
-        };
+        let separation =
+            |q: usize| std::array::from_fn(|a| T::from_rational(&(&self.places[p][a] - &self.places[q][a])));
         (0..self.places.len()).map(|q| (q, separation(q))).collect()
     }
 

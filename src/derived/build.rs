@@ -52,7 +52,8 @@ impl Builder {
 
     fn expression(&mut self, node: &Node) -> Result<Expression, DeriveError> {
         let constant = |value: Rational| Expression::scalar(Term::new(value, Vec::new()));
-        let symbol = |symbol| Expression::scalar(Term::new(Rational::one(), vec![Factor::new(symbol, &[], &[])]));
+        let symbol =
+            |symbol| Expression::scalar(Term::new(Rational::one(), vec![Factor::new(symbol, &[], &[])]));
         Ok(match &node.kind {
             Kind::Number(value) if value.is_zero() => Expression::default(),
             Kind::Number(value) => constant(value.clone()),
@@ -108,8 +109,7 @@ impl Builder {
                 let centre = self.labels[*centre];
                 self.centres.push(Some(centre));
                 self.labels[*bound] = label;
-                self.expression(body)?
-                    .map(|term| term.bounds.insert(0, Bound { particle: label, centre }))
+                self.expression(body)?.map(|term| term.bounds.insert(0, Bound { particle: label, centre }))
             }
         })
     }
@@ -143,15 +143,21 @@ impl Builder {
         };
         let path = self.path(label);
         let indices: Vec<Index> = (0..order).map(|_| self.index()).collect();
-        let derivative = Factor::new(Symbol::Derivative(self.field), &[], &[indices.clone(), own.clone()].concat());
+        let derivative =
+            Factor::new(Symbol::Derivative(self.field), &[], &[indices.clone(), own.clone()].concat());
         let sign = if order % 2 == 0 { int(1) } else { int(-1) };
         let terms = shares(order, path.len()).into_iter().map(|shares| {
             let mut term = Term::new(sign.clone(), vec![derivative.clone()]);
             let mut rest = indices.iter();
             for (step, count) in path.iter().zip(shares) {
-                term.coefficient /= Rational::from_integer((1..=count).map(num_bigint::BigInt::from).product());
+                term.coefficient /=
+                    Rational::from_integer((1..=count).map(num_bigint::BigInt::from).product());
                 for index in rest.by_ref().take(count) {
-                    term.factors.push(Factor::new(Symbol::Separation, &[step.centre, step.particle], &[*index]));
+                    term.factors.push(Factor::new(
+                        Symbol::Separation,
+                        &[step.centre, step.particle],
+                        &[*index],
+                    ));
                 }
             }
             term
@@ -186,7 +192,8 @@ impl Builder {
             let factor = Factor::new(Symbol::Separation, &[step.centre, step.particle], &[index]);
             Term::new(int(sign), vec![factor])
         };
-        let terms = to_p[shared..].iter().map(|s| step(-1, s)).chain(to_q[shared..].iter().map(|s| step(1, s)));
+        let terms =
+            to_p[shared..].iter().map(|s| step(-1, s)).chain(to_q[shared..].iter().map(|s| step(1, s)));
         Expression { free: vec![index], terms: terms.collect() }
     }
 
@@ -273,7 +280,9 @@ fn shares(total: usize, parts: usize) -> Vec<Vec<usize>> {
         1 => vec![vec![total]],
         _ => (0..=total)
             .flat_map(|first| {
-                shares(total - first, parts - 1).into_iter().map(move |rest| [&[first], rest.as_slice()].concat())
+                shares(total - first, parts - 1)
+                    .into_iter()
+                    .map(move |rest| [&[first], rest.as_slice()].concat())
             })
             .collect(),
     }

@@ -59,7 +59,8 @@ impl<'a> Graph<'a> {
         let mut edges = vec![Vec::new(); factors + term.bounds.len()];
         let mut met: BTreeMap<Index, (usize, usize)> = BTreeMap::new();
         for (node, factor) in term.factors.iter().enumerate() {
-            for (place, index) in factor.indices.iter().enumerate().filter(|(_, index)| !free.contains(index)) {
+            for (place, index) in factor.indices.iter().enumerate().filter(|(_, index)| !free.contains(index))
+            {
                 let mine = slot(factor, place);
                 match met.insert(*index, (node, mine)) {
                     Some((other, theirs)) => {

@@ -43,7 +43,10 @@ impl Conservation {
         let no = |angular| Self { total: Conserved::No, angular };
         let angular_no = if acts_as_force { Conserved::No } else { Conserved::DoesNotApply };
         let units = operator.root.units;
-        if operator.rank() > 1 || units.length == 0 || (operator.field == Field::Vector && operator.rank() == 0) {
+        if operator.rank() > 1
+            || units.length == 0
+            || (operator.field == Field::Vector && operator.rank() == 0)
+        {
             return Ok(Self { total: Conserved::DoesNotApply, angular: Conserved::DoesNotApply });
         }
         let weight = match units.mass {
@@ -92,9 +95,9 @@ impl Conservation {
         }
         let along = |term: &Term| {
             let free = expression.free.first();
-            term.factors.iter().any(|factor| {
-                factor.symbol == Symbol::Separation && factor.indices.first() == free
-            })
+            term.factors
+                .iter()
+                .any(|factor| factor.symbol == Symbol::Separation && factor.indices.first() == free)
         };
         let angular = match (acts_as_force, here.terms.iter().all(along)) {
             (false, _) => Conserved::DoesNotApply,

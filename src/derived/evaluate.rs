@@ -38,7 +38,12 @@ impl<'a, T: Number> Evaluation<'a, T> {
     }
 
     /// The expression at particle `i`, its free indices in order, then those of ∇…∇u, then that of v.
-    pub(super) fn at(&mut self, expression: &Expression, i: usize, order: usize) -> Result<Vec<T>, DeriveError> {
+    pub(super) fn at(
+        &mut self,
+        expression: &Expression,
+        i: usize,
+        order: usize,
+    ) -> Result<Vec<T>, DeriveError> {
         let places: Places<T> = BTreeMap::from([(0, (i, [T::nought(), T::nought(), T::nought()]))]);
         let mut total: Option<Vec<T>> = None;
         for term in expression.terms.iter().filter(|term| term.order() == order) {
@@ -96,7 +101,8 @@ impl<'a, T: Number> Evaluation<'a, T> {
                 let named = |label: Label| group.iter().any(|bound| bound.particle == label);
                 let linked = open.iter().position(|bound| {
                     let shares = |factor: &&Factor| {
-                        factor.particles.contains(&bound.particle) && factor.particles.iter().any(|p| named(*p))
+                        factor.particles.contains(&bound.particle)
+                            && factor.particles.iter().any(|p| named(*p))
                     };
                     named(bound.centre) || waiting.iter().any(shares)
                 });
@@ -138,7 +144,10 @@ impl<'a, T: Number> Evaluation<'a, T> {
         let d = self.dimension;
         let at = |place: usize| {
             let label = factor.particles[place];
-            places.get(&label).cloned().unwrap_or_else(|| unreachable!("only factors that are ready are taken"))
+            places
+                .get(&label)
+                .cloned()
+                .unwrap_or_else(|| unreachable!("only factors that are ready are taken"))
         };
         let number = |value: i64| T::from_rational(&int(value));
         let particle = factor.particles.first().map_or(0, |_| at(0).0);
@@ -166,7 +175,10 @@ impl<'a, T: Number> Evaluation<'a, T> {
                 // Even powers need no root. What divides by |r_ii| is left out of its sum.
                 let (base, power) = match factor.power % 2 {
                     0 => (square, factor.power / 2),
-                    _ => (square.root().ok_or_else(|| no_value("a distance is no rational number"))?, factor.power),
+                    _ => (
+                        square.root().ok_or_else(|| no_value("a distance is no rational number"))?,
+                        factor.power,
+                    ),
                 };
                 return Ok(Named::scalar(base.power(power).unwrap_or_else(T::nought)));
             }

@@ -143,7 +143,9 @@ impl Expansion {
             let ground = Arrangement::new(dimension, trial);
             // Where distances or π are not rational, floating point shows it: what is left is no rounding.
             match self.error_at::<Rational>(&ground, 0, order) {
-                Ok(values) if values.iter().flatten().flatten().any(|value| !value.is_nought()) => return Ok(true),
+                Ok(values) if values.iter().flatten().flatten().any(|value| !value.is_nought()) => {
+                    return Ok(true);
+                }
                 Ok(_) => {}
                 Err(DeriveError::NoValue { .. }) => {
                     let values = self.error_at::<f64>(&ground, 0, order)?;
@@ -262,8 +264,7 @@ fn vanishing(term: &Term, group: &PointGroup) -> Option<VanishingTerm> {
     }
     let all: Vec<&Factor> = term.factors.iter().collect();
     // Inversion at i carries the whole lattice onto itself, and turns every separation.
-    (group.has_inversion() && separations(&all) % 2 == 1)
-        .then_some(VanishingTerm::ByInversion)
+    (group.has_inversion() && separations(&all) % 2 == 1).then_some(VanishingTerm::ByInversion)
 }
 
 /// Whether some homogeneous polynomial of this degree is left as it is by the group.

@@ -50,7 +50,12 @@ pub(super) fn normalised_with(expression: Expression, base: Label) -> Result<Exp
     }
     let mut terms: Vec<Term> = collected.into_values().filter(|term| !term.coefficient.is_zero()).collect();
     terms.sort_by(|a, b| {
-        (a.order(), a.bounds.len(), &a.bounds, &a.factors).cmp(&(b.order(), b.bounds.len(), &b.bounds, &b.factors))
+        (a.order(), a.bounds.len(), &a.bounds, &a.factors).cmp(&(
+            b.order(),
+            b.bounds.len(),
+            &b.bounds,
+            &b.factors,
+        ))
     });
     Ok(Expression { free, terms })
 }

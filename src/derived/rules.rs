@@ -76,7 +76,8 @@ fn cancel_b(term: &Term, place: usize) -> Option<Vec<Term>> {
     let centre = factor.particles[0];
     let scalars = weights(centre, None);
     for bound in (0..term.bounds.len()).filter(|bound| term.bounds[*bound].centre == centre) {
-        let Some(found) = cluster(term, bound).filter(|c| c.scalars == scalars && c.indices.len() == 2) else {
+        let Some(found) = cluster(term, bound).filter(|c| c.scalars == scalars && c.indices.len() == 2)
+        else {
             continue;
         };
         for (mine, other) in [(0, 1), (1, 0)] {
@@ -101,7 +102,8 @@ fn cancel_b_hat(term: &Term, place: usize) -> Option<Vec<Term>> {
     let inverse_square = Factor::new(Symbol::Distance, &[centre, Label::MAX], &[]).to_power(-2);
     let scalars = weights(centre, Some(inverse_square.clone()));
     for bound in (0..term.bounds.len()).filter(|bound| term.bounds[*bound].centre == centre) {
-        let Some(found) = cluster(term, bound).filter(|c| c.scalars == scalars && c.indices.len() == 4) else {
+        let Some(found) = cluster(term, bound).filter(|c| c.scalars == scalars && c.indices.len() == 4)
+        else {
             continue;
         };
         let mut rest = found.indices.clone();
@@ -169,13 +171,14 @@ fn cancel_body(term: &Term, place: usize, body: &Expression) -> Option<Vec<Term>
     }
     let centre = named(pivot.bounds[0].centre)?;
     for bound in (0..term.bounds.len()).filter(|bound| term.bounds[*bound].centre == centre) {
-        let Some(found) = cluster(term, bound)
-            .filter(|c| c.scalars == scalars && c.indices.len() == body.free.len() && !c.places.contains(&place))
-        else {
+        let Some(found) = cluster(term, bound).filter(|c| {
+            c.scalars == scalars && c.indices.len() == body.free.len() && !c.places.contains(&place)
+        }) else {
             continue;
         };
         // P⁻¹_ab P_bc = δ_ac, and P_ab P⁻¹_bc = δ_ac.
-        let pairings: Vec<Option<([Index; 2], [Index; 2])>> = match (&factor.indices[..], &found.indices[..]) {
+        let pairings: Vec<Option<([Index; 2], [Index; 2])>> = match (&factor.indices[..], &found.indices[..])
+        {
             ([], []) => vec![None],
             ([a, b], [c, d]) => {
                 let ways = [(b, a, c, d, false), (b, a, d, c, false), (a, b, c, d, true), (a, b, d, c, true)];
@@ -195,7 +198,9 @@ fn cancel_body(term: &Term, place: usize, body: &Expression) -> Option<Vec<Term>
             continue;
         }
         let at = base.factors.iter().position(|known| {
-            known.symbol == factor.symbol && known.particles == factor.particles && known.indices == factor.indices
+            known.symbol == factor.symbol
+                && known.particles == factor.particles
+                && known.indices == factor.indices
         })?;
         base.coefficient /= &pivot.coefficient;
         let mut first = base.clone();
@@ -270,8 +275,10 @@ fn take(term: &mut Term, wanted: &Factor) -> bool {
 /// The term without a cluster and without the factors at these places.
 fn without(term: &Term, cluster: &Cluster, places: &[usize]) -> Term {
     let gone = |place: &usize| cluster.places.contains(place) || places.contains(place);
-    let factors = (0..term.factors.len()).filter(|place| !gone(place)).map(|place| term.factors[place].clone());
-    let bounds = (0..term.bounds.len()).filter(|bound| *bound != cluster.bound).map(|bound| term.bounds[bound]);
+    let factors =
+        (0..term.factors.len()).filter(|place| !gone(place)).map(|place| term.factors[place].clone());
+    let bounds =
+        (0..term.bounds.len()).filter(|bound| *bound != cluster.bound).map(|bound| term.bounds[bound]);
     Term { coefficient: term.coefficient.clone(), bounds: bounds.collect(), factors: factors.collect() }
 }
 

@@ -36,7 +36,12 @@ impl Expansion {
         let printed = self.orders.iter().map(|terms| Printed {
             order: terms.order,
             derivative: derivative(field, terms.order, format),
-            terms: terms.error.terms.iter().map(|t| Writer::new(t, &terms.error, field, format).term()).collect(),
+            terms: terms
+                .error
+                .terms
+                .iter()
+                .map(|t| Writer::new(t, &terms.error, field, format).term())
+                .collect(),
         });
         printed.collect()
     }
@@ -95,7 +100,9 @@ impl<'a> Writer<'a> {
 
     fn number(&self, value: &Rational) -> String {
         match self.format {
-            Format::Latex if !value.is_integer() => format!("\\frac{{{}}}{{{}}}", value.numer(), value.denom()),
+            Format::Latex if !value.is_integer() => {
+                format!("\\frac{{{}}}{{{}}}", value.numer(), value.denom())
+            }
             _ => value.to_string(),
         }
     }
@@ -168,7 +175,9 @@ impl<'a> Writer<'a> {
         if hessians > 0 || !separations.iter().all(met) || leads_out.len() > 1 {
             return None;
         }
-        if leads_out.iter().any(|index| !separations.contains(index)) || derived.iter().any(|i| !separations.contains(i)) {
+        if leads_out.iter().any(|index| !separations.contains(index))
+            || derived.iter().any(|i| !separations.contains(i))
+        {
             return None;
         }
         let find = |wanted: &Symbol| inside.iter().find(|factor| factor.symbol == *wanted);
@@ -212,9 +221,12 @@ impl<'a> Writer<'a> {
     /// The scalars outside every sum, if all else outside is the derivative, δ or B.
     fn scalars_outside(&self, derivative: usize) -> Option<Vec<&Factor>> {
         let bound = |label: &Label| self.term.bounds.iter().any(|bound| bound.particle == *label);
-        let outside = self.term.factors.iter().enumerate().filter(|(place, factor)| {
-            *place != derivative && !factor.particles.iter().any(bound)
-        });
+        let outside = self
+            .term
+            .factors
+            .iter()
+            .enumerate()
+            .filter(|(place, factor)| *place != derivative && !factor.particles.iter().any(bound));
         let mut scalars = Vec::new();
         for (_, factor) in outside {
             match factor.symbol {
@@ -384,7 +396,8 @@ impl<'a> Writer<'a> {
                 };
             }
             let expression = Expression { free: factor.indices.clone(), terms: Vec::new() };
-            let writer = Writer { term: &term, free: &expression.free, field: self.field, format: self.format };
+            let writer =
+                Writer { term: &term, free: &expression.free, field: self.field, format: self.format };
             let magnitude = term.coefficient.abs();
             let rest = writer.with_indices();
             let number = match (magnitude == int(1), rest.is_empty()) {

@@ -17,10 +17,32 @@ pub(super) struct Patch<'a> {
     pub centre: usize,
     /// The neighbours of the centre, itself among them.
     pub of_centre: Vec<(usize, [f64; 3])>,
+    /// W and its derivatives between the centre and each particle, by particle.
+    pub kernel_of_centre: Vec<[f64; 3]>,
     /// Volumes by particle, in units of R^D.
     pub volumes: Vec<f64>,
     /// The places of all particles, where an operator sums over neighbours of neighbours.
     pub places: Vec<[f64; 3]>,
+}
+
+/// W and its derivatives between the centre and its neighbours, by particle, of which there are `count`.
+pub(super) fn kernel_of_centre(
+    evaluator: &Evaluator<f64>,
+    of_centre: &[(usize, [f64; 3])],
+    count: usize,
+) -> Vec<[f64; 3]> {
+    let mut table = vec![[0.0; 3]; count];
+    for block in of_centre.chunks(8) {
+        let mut lanes = [2.0; 8];
+        for (lane, (_, r)) in lanes.iter_mut().zip(block) {
+            *lane = (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt();
+        }
+        let g = evaluator.evaluate(&lanes).g;
+        for (lane, (q, _)) in block.iter().enumerate() {
+            table[*q] = [g[0][lane], g[1][lane], g[2][lane]];
+        }
+    }
+    table
 }
 
 impl Ground<f64> for Patch<'_> {
@@ -50,7 +72,10 @@ impl Ground<f64> for Patch<'_> {
         self.h
     }
 
-    fn kernel(&self, _p: usize, _q: usize, r: &[f64; 3]) -> [f64; 3] {
+    fn kernel(&self, p: usize, q: usize, r: &[f64; 3]) -> [f64; 3] {
+        if let (true, Some(known)) = (p == self.centre, self.kernel_of_centre.get(q)) {
+            return *known;
+        }
         let mut lanes = [2.0; 8];
         lanes[0] = (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt();
         self.evaluator.evaluate(&lanes).g.map(|values| values[0])
@@ -72,13 +97,8 @@ pub(super) fn coefficients(
             None => Moments::new(coefficient.operator(), patch, patch.centre),
         };
         let all = MultiIndex::all(patch.dimension, coefficient.order()).unwrap_or_default();
-        let (mut components, mut magnitude) = (Vec::new(), 0.0_f64);
-        for alpha in &all {
-            let (values, size) = moments.of(alpha)?;
-            components.extend(values.concat());
-            magnitude = magnitude.max(size);
-        }
-        found.push((components, magnitude));
+        let (values, magnitude) = moments.of(&all)?;
+        found.push((values.concat(), magnitude));
         last = Some((coefficient.id(), moments));
     }
     Ok(found)
@@ -97,15 +117,17 @@ pub(super) fn target_components(coefficient: &Coefficient, dimension: usize) -> 
         for component in 0..components {
             for out in 0..dimension.pow(rank) {
                 let mut rest = out;
-                let mut value: Vec<usize> = (0..rank).map(|_| {
-                    let index = rest % dimension;
-                    rest /= dimension;
-                    index
-                }).collect();
+                let mut value: Vec<usize> = (0..rank)
+                    .map(|_| {
+                        let index = rest % dimension;
+                        rest /= dimension;
+                        index
+                    })
+                    .collect();
                 value.reverse();
-                let target = coefficient.target().map(|target| {
-                    rational_to_f64(&target.coefficient(field, &value, &letters, component))
-                });
+                let target = coefficient
+                    .target()
+                    .map(|target| rational_to_f64(&target.coefficient(field, &value, &letters, component)));
                 values.push(target.unwrap_or(0.0));
             }
         }

@@ -15,8 +15,8 @@ pub mod window;
 
 pub use error::{FitError, Input};
 pub use regular::{RegularError, RegularNorm, RegularRung, RegularSpec, regular_rung};
-pub use stencil::{Degeneracy, Stencil, StencilEntry, StencilError, stencil};
 pub use sample::{
     CLOSEST, MomentStatistics, SampleBlock, SampleError, SampleSpec, Sampler, Summary, is_precise,
     neighbourhood_radius, summarise,
 };
+pub use stencil::{Degeneracy, Stencil, StencilEntry, StencilError, stencil};

@@ -1,7 +1,7 @@
 //! Rungs of the regular ladder at one R/Δ and its offsets: exact lattice sums of moments, stencils in floating point for
 //! what an operator's expansion multiplies ∇^m u by.
 
-use super::coefficient::{Patch, coefficients, made_ready, norm, target_components};
+use super::coefficient::{Patch, coefficients, kernel_of_centre, made_ready, norm, target_components};
 use super::sample::FLOOR_FACTOR;
 use super::stencil::StencilError;
 use crate::exact::{Enclosure, Rational, int, rational_to_f64};
@@ -168,7 +168,8 @@ fn coefficient_norms(spec: &RegularSpec, support: &Rational) -> Result<Vec<Regul
         }
     };
     let volumes = vec![volume; places.len()];
-    let patch = Patch { dimension, evaluator: &evaluator, h, centre, of_centre, volumes, places };
+    let kernel_of_centre = kernel_of_centre(&evaluator, &of_centre, places.len());
+    let patch = Patch { dimension, evaluator: &evaluator, h, centre, of_centre, kernel_of_centre, volumes, places };
     let values = coefficients(&spec.subjects, &patch)?;
     let norms = asked.iter().zip(values).map(|(coefficient, (components, magnitude))| {
         let power = Subject::Coefficient((*coefficient).clone()).length_power();

@@ -4,7 +4,7 @@
 //! Frobenius norm |S − S^reg|, in units of h. Sample n is a pure function of (seed, n, lattice site): R does not change it,
 //! nor does the number of threads.
 
-use super::coefficient::{Patch, coefficients, made_ready, norm as coefficient_norm, target_components};
+use super::coefficient::{Patch, coefficients, kernel_of_centre, made_ready, norm as coefficient_norm, target_components};
 use super::stencil::StencilError;
 use crate::exact::rational_to_f64;
 use crate::kernel::{Evaluator, Kernel};
@@ -259,6 +259,9 @@ impl Sampler {
             self.sums.add(&mut sums, r_ij.map(|x| x / radius), *weight);
         }
         let (mut components, count) = self.sums.finish(sums);
+        if self.sums.moments().len() == self.spec.subjects.len() {
+            return Ok(Neighbourhood::Sums(components, count));
+        }
         let patch = self.patch(&pairs, &weights);
         let fault = |source| SampleError::Stencil { sample, source };
         for (own, _) in coefficients(&self.spec.subjects, &patch).map_err(fault)? {
@@ -272,12 +275,14 @@ impl Sampler {
         let radius = self.spec.support_over_dx;
         let centre = pairs.iter().position(|(_, r)| r.iter().all(|x| *x == 0.0)).unwrap_or(0);
         let own = pairs.iter().enumerate().map(|(place, (_, r))| (place, r.map(|x| x / radius)));
+        let of_centre: Vec<(usize, [f64; 3])> = own.collect();
         Patch {
             dimension: self.spec.lattice.dimension(),
             evaluator: &self.evaluator.0,
             h: self.evaluator.1,
             centre,
-            of_centre: own.collect(),
+            kernel_of_centre: kernel_of_centre(&self.evaluator.0, &of_centre, of_centre.len()),
+            of_centre,
             volumes: weights.to_vec(),
             places: Vec::new(),
         }

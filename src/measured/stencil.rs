@@ -108,7 +108,7 @@ pub fn stencil<T: Number>(
     let entries = terms.into_iter().map(|term| StencilEntry {
         particle: term.particle,
         displacement: term.place,
-        weights: term.parts.into_iter().map(|part| part.values).collect(),
+        weights: term.parts.into_iter().map(|part| part.values.to_vec()).collect(),
     });
     Ok(Stencil {
         dimension: walk.dimension,
@@ -131,16 +131,17 @@ impl<'a, T: Number> Moments<'a, T> {
         Self { walk: Walk::new(operator, ground, i), operator }
     }
 
-    /// Σ_j c_ij (r_j − r_i)^α / α!, by component of the field, then of the value; and the sum of the terms' magnitudes.
-    pub(super) fn of(&mut self, alpha: &MultiIndex) -> Result<(Vec<Vec<T>>, f64), StencilError> {
-        let mut values = Vec::with_capacity(self.walk.components);
+    /// For each α: Σ_j c_ij (r_j − r_i)^α / α!, by component of the field, then of the value. And the sum of the terms'
+    /// magnitudes.
+    pub(super) fn of(&mut self, all: &[MultiIndex]) -> Result<(Vec<Vec<T>>, f64), StencilError> {
         self.walk.magnitude = 0.0;
-        for component in 0..self.walk.components {
-            self.walk.monomial = Some((*alpha, component));
-            self.walk.kept.clear();
-            values.push(self.walk.free(&self.operator.root)?.values);
-        }
-        Ok((values, self.walk.magnitude))
+        self.walk.monomials = Some(all.to_vec());
+        self.walk.kept.clear();
+        let Value::Linear(terms) = self.walk.value(&self.operator.root)? else {
+            unreachable!("the parser has checked that operators are linear")
+        };
+        let parts = terms.into_iter().flat_map(|term| term.parts).map(|part| part.values.to_vec());
+        Ok((parts.collect(), self.walk.magnitude))
     }
 }
 
@@ -203,18 +204,23 @@ fn monomial<T: Number>(x: &[T; 3], alpha: &MultiIndex) -> T {
     product
 }
 
+/// In place of a particle: the field was a monomial there, and its value is in the part.
+const APPLIED: usize = usize::MAX;
+
 /// A tensor, or a tensor linear in the field.
+#[derive(Clone)]
 enum Value<T> {
     Free(Tensor<T>),
     Linear(Vec<Term<T>>),
 }
 
-/// The part of a linear value that multiplies the field at one particle.
+/// The part of a linear value that multiplies the field at one particle, or what it gives for monomials.
+#[derive(Clone)]
 struct Term<T> {
     particle: usize,
     /// r_j − r_i.
     place: [T; 3],
-    /// By component of the field.
+    /// By component of the field; by monomial first, if it was applied to several.
     parts: Vec<Tensor<T>>,
 }
 
@@ -244,10 +250,10 @@ struct Walk<'a, T> {
     b_hat: HashMap<usize, Tensor<T>>,
     neighbours: HashMap<usize, Rc<[(usize, [T; 3])]>>,
     least_norm: Vec<usize>,
-    /// The field, if it is a monomial about particle i in one component; else it is left open.
-    monomial: Option<(MultiIndex, usize)>,
+    /// Monomials about particle i in place of the field, each in each component; else it is left open.
+    monomials: Option<Vec<MultiIndex>>,
     /// Sums that depend on particle i alone, by the place of their node.
-    kept: HashMap<*const Node, Tensor<T>>,
+    kept: HashMap<*const Node, Value<T>>,
     /// With a monomial: the largest sum of magnitudes of any sum over the field.
     magnitude: f64,
 }
@@ -263,7 +269,7 @@ impl<'a, T: Number> Walk<'a, T> {
             b_hat: HashMap::new(),
             neighbours: HashMap::new(),
             least_norm: Vec::new(),
-            monomial: None,
+            monomials: None,
             kept: HashMap::new(),
             magnitude: 0.0,
         };
@@ -295,10 +301,10 @@ impl<'a, T: Number> Walk<'a, T> {
             Kind::Renormalisation(p) => Ok(Value::Free(self.renormalisation(self.bound(*p).0)?)),
             Kind::RenormalisationHat(p) => Ok(Value::Free(self.renormalisation_hat(self.bound(*p).0)?)),
             Kind::OfPair(quantity, p, q) => Ok(Value::Free(self.pair(*quantity, *p, *q)?)),
-            Kind::Field(p) => Ok(match &self.monomial {
-                None => Value::Linear(vec![self.field(*p)]),
-                Some((alpha, component)) => Value::Free(self.monomial_at(*p, alpha, *component)),
-            }),
+            Kind::Field(p) => Ok(Value::Linear(vec![match &self.monomials {
+                None => self.field(*p),
+                Some(all) => self.monomials_at(*p, all),
+            }])),
             Kind::Add(nodes) => {
                 let mut values = nodes.iter().map(|node| self.value(node));
                 let first = values.next().unwrap_or_else(|| unreachable!("a sum has terms"))?;
@@ -329,14 +335,12 @@ impl<'a, T: Number> Walk<'a, T> {
                 })?;
                 Ok(Value::Free(Tensor::from_rows(d, rows)))
             }
-            Kind::Sum { bound, centre, body } if self.monomial.is_some() && of_centre_alone(node) => {
+            Kind::Sum { bound, centre, body } if self.monomials.is_some() && of_centre_alone(node) => {
                 if let Some(known) = self.kept.get(&std::ptr::from_ref(node)) {
-                    return Ok(Value::Free(known.clone()));
+                    return Ok(known.clone());
                 }
                 let value = self.sum(*bound, *centre, body, node)?;
-                if let Value::Free(tensor) = &value {
-                    self.kept.insert(std::ptr::from_ref(node), tensor.clone());
-                }
+                self.kept.insert(std::ptr::from_ref(node), value.clone());
                 Ok(value)
             }
             Kind::Sum { bound, centre, body } => self.sum(*bound, *centre, body, node),
@@ -352,7 +356,7 @@ impl<'a, T: Number> Walk<'a, T> {
     ) -> Result<Value<T>, StencilError> {
         let (particle, place) = self.bound(centre);
         let d = self.dimension;
-        let mut total = match node.linear && self.monomial.is_none() {
+        let mut total = match node.linear {
             true => Value::Linear(Vec::new()),
             false => Value::Free(Tensor::zero(d, usize::from(node.rank))),
         };
@@ -361,8 +365,9 @@ impl<'a, T: Number> Walk<'a, T> {
             let there = std::array::from_fn(|a| place[a].clone() - r[a].clone());
             self.bound[bound] = Some((*neighbour, there));
             let value = self.value(body)?;
-            if let (true, Value::Free(tensor)) = (node.linear, &value) {
-                magnitude += tensor.values.iter().map(T::size).fold(0.0, f64::max);
+            if let (true, Value::Linear(terms)) = (self.monomials.is_some(), &value) {
+                let parts = terms.iter().flat_map(|term| &term.parts).flat_map(|part| part.values.iter());
+                magnitude += parts.map(T::size).fold(0.0, f64::max);
             }
             total = add(total, value);
         }
@@ -375,18 +380,15 @@ impl<'a, T: Number> Walk<'a, T> {
         self.neighbours.entry(particle).or_insert_with(|| self.ground.neighbours(particle).into()).clone()
     }
 
-    fn monomial_at(&self, p: Particle, alpha: &MultiIndex, component: usize) -> Tensor<T> {
+    fn monomials_at(&self, p: Particle, all: &[MultiIndex]) -> Term<T> {
         let (_, place) = self.bound(p);
-        let factorial = Rational::from_integer(alpha.factorial().into());
-        let value = monomial(&place, alpha) * T::from_rational(&(int(1) / factorial));
-        match self.components {
-            1 => Tensor::scalar(self.dimension, value),
-            _ => {
-                let mut vector: [T; 3] = std::array::from_fn(|_| T::nought());
-                vector[component] = value;
-                Tensor::vector(self.dimension, &vector)
-            }
+        let mut parts = Vec::with_capacity(all.len() * self.components);
+        for alpha in all {
+            let factorial: i64 = alpha.powers.iter().map(|power| (1..=i64::from(*power)).product::<i64>()).product();
+            let value = monomial(&place, alpha) / T::from_rational(&int(factorial));
+            parts.extend(self.field(p).parts.into_iter().map(|unit| unit.scaled(&value)));
         }
+        Term { particle: APPLIED, place, parts }
     }
 
     /// 1/x^n. What divides by the distance of a particle from itself is left out of its sum: zero.
@@ -551,18 +553,23 @@ impl<'a, T: Number> Walk<'a, T> {
         // The rank of Σ r r, row by row, is the number of directions that the neighbours span.
         let gram: Vec<Vec<T>> = (0..3)
             .map(|a| {
-                let product = |b: usize| {
-                    others.iter().fold(T::nought(), |sum, r| sum + r[a].clone() * r[b].clone())
-                };
+                let product =
+                    |b: usize| others.iter().fold(T::nought(), |sum, r| sum + r[a].clone() * r[b].clone());
                 (0..3).map(product).collect()
             })
             .collect();
-        let spanned = match solve(&gram, &[T::nought(), T::nought(), T::nought()], &[T::from_rational(&int(1)), T::from_rational(&int(1)), T::from_rational(&int(1))]) {
+        let spanned = match solve(
+            &gram,
+            &[T::nought(), T::nought(), T::nought()],
+            &[T::from_rational(&int(1)), T::from_rational(&int(1)), T::from_rational(&int(1))],
+        ) {
             Solution::One(_) => 3,
             Solution::Least { rank, .. } | Solution::None { rank } => rank,
         };
         match spanned {
-            _ if others.len() < unknowns.min(self.dimension) => Degeneracy::TooFew { neighbours: others.len() },
+            _ if others.len() < unknowns.min(self.dimension) => {
+                Degeneracy::TooFew { neighbours: others.len() }
+            }
             1 if self.dimension > 1 => Degeneracy::OnALine,
             2 if self.dimension > 2 => Degeneracy::InAPlane,
             _ if others.len() < unknowns => Degeneracy::TooFew { neighbours: others.len() },
@@ -576,7 +583,10 @@ fn of_centre_alone(node: &Node) -> bool {
     fn free_of_others(node: &Node, own: &mut Vec<Particle>) -> bool {
         let known = |p: &Particle| *p == 0 || own.contains(p);
         let named = match &node.kind {
-            Kind::Field(p) | Kind::OfParticle(_, p) | Kind::Renormalisation(p) | Kind::RenormalisationHat(p) => known(p),
+            Kind::Field(p)
+            | Kind::OfParticle(_, p)
+            | Kind::Renormalisation(p)
+            | Kind::RenormalisationHat(p) => known(p),
             Kind::OfPair(_, p, q) => known(p) && known(q),
             Kind::Sum { bound, centre, .. } => {
                 let known = known(centre);
@@ -593,8 +603,18 @@ fn of_centre_alone(node: &Node) -> bool {
 fn add<T: Number>(a: Value<T>, b: Value<T>) -> Value<T> {
     match (a, b) {
         (Value::Free(a), Value::Free(b)) => Value::Free(a.plus(&b)),
+        // What was applied to monomials is added up; the parts of a stencil stand side by side.
         (Value::Linear(mut a), Value::Linear(b)) => {
-            a.extend(b);
+            for term in b {
+                match a.iter_mut().find(|known| term.particle == APPLIED && known.particle == APPLIED) {
+                    Some(known) => {
+                        for (sum, part) in known.parts.iter_mut().zip(&term.parts) {
+                            *sum = sum.plus(part);
+                        }
+                    }
+                    None => a.push(term),
+                }
+            }
             Value::Linear(a)
         }
         _ => unreachable!("the parser has checked what is linear"),

@@ -1,25 +1,29 @@
 //! Dense tensors of equal extent D in every index; the first index is the slowest.
 
 use crate::exact::{Number, int};
+use smallvec::{SmallVec, smallvec};
+
+/// Up to rank 2 in space without an allocation.
+type Values<T> = SmallVec<[T; 9]>;
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Tensor<T> {
     dimension: usize,
     rank: usize,
-    pub(super) values: Vec<T>,
+    pub(super) values: Values<T>,
 }
 
 impl<T: Number> Tensor<T> {
     pub(super) fn zero(dimension: usize, rank: usize) -> Self {
-        Self { dimension, rank, values: vec![T::nought(); dimension.pow(rank as u32)] }
+        Self { dimension, rank, values: SmallVec::from_elem(T::nought(), dimension.pow(rank as u32)) }
     }
 
     pub(super) fn scalar(dimension: usize, value: T) -> Self {
-        Self { dimension, rank: 0, values: vec![value] }
+        Self { dimension, rank: 0, values: smallvec![value] }
     }
 
     pub(super) fn vector(dimension: usize, values: &[T; 3]) -> Self {
-        Self { dimension, rank: 1, values: values[..dimension].to_vec() }
+        Self { dimension, rank: 1, values: values[..dimension].iter().cloned().collect() }
     }
 
     pub(super) fn unit(dimension: usize) -> Self {
@@ -31,7 +35,7 @@ impl<T: Number> Tensor<T> {
     }
 
     pub(super) fn from_rows(dimension: usize, rows: Vec<Vec<T>>) -> Self {
-        Self { dimension, rank: 2, values: rows.concat() }
+        Self { dimension, rank: 2, values: rows.into_iter().flatten().collect() }
     }
 
     pub(super) fn rows(&self) -> Vec<Vec<T>> {
@@ -82,7 +86,7 @@ impl<T: Number> Tensor<T> {
     pub(super) fn contract(&self, other: &Self, count: usize) -> Self {
         let inner = self.dimension.pow(count as u32);
         let (rows, columns) = (self.values.len() / inner, other.values.len() / inner);
-        let mut values = Vec::with_capacity(rows * columns);
+        let mut values = Values::with_capacity(rows * columns);
         for row in 0..rows {
             for column in 0..columns {
                 let products = (0..inner).map(|k| {

@@ -131,9 +131,9 @@ fn fitted(measured: Measured) -> Estimate {
 }
 
 fn case(case: &CaseId, subject: &Subject) -> Case {
-    let of_operator = subject.coefficient().map(|coefficient| {
-        [("operator", coefficient.id().into()), ("order", coefficient.order().into())]
-    });
+    let of_operator = subject
+        .coefficient()
+        .map(|coefficient| [("operator", coefficient.id().into()), ("order", coefficient.order().into())]);
     let more = of_operator.into_iter().flatten().map(|(name, value)| (name.to_owned(), value));
     Case {
         source: "lattice".into(),

@@ -1,8 +1,6 @@
 //! An operator's expansion as a record, as text and as LaTeX.
 
-use crate::derived::{
-    Conservation, Conserved, DeriveError, Expansion, Format, Printed, VanishingTerm,
-};
+use crate::derived::{Conservation, Conserved, DeriveError, Expansion, Format, Printed, VanishingTerm};
 use crate::exact::Order;
 use crate::language::{Operator, Target, operators};
 use crate::particles::{Lattice, PointGroup};
@@ -101,7 +99,10 @@ pub fn expansion_report(
         approximates: expansion.target.as_ref().map(|target| target.formula(field)),
         orders,
         consistency: (1..=3).map(|d| expansion.consistency(d)).collect::<Result<_, _>>()?,
-        conserves: ConservationReport { total: said(conservation.total), angular: said(conservation.angular) },
+        conserves: ConservationReport {
+            total: said(conservation.total),
+            angular: said(conservation.angular),
+        },
         text: expansion.operator.text,
     })
 }
@@ -142,7 +143,9 @@ impl ExpansionReport {
             line(format!("  Note: {}", self.remark));
         }
         match &self.approximates {
-            Some(target) if target.starts_with('−') => line(format!("Truncation error ⟨L⟩_i − ({target}) =")),
+            Some(target) if target.starts_with('−') => {
+                line(format!("Truncation error ⟨L⟩_i − ({target}) ="))
+            }
             Some(target) => line(format!("Truncation error ⟨L⟩_i − {target} =")),
             None => line("What it approximates cannot be told from its units; ⟨L⟩_i =".into()),
         }

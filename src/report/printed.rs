@@ -3,7 +3,7 @@
 use crate::claim::{PrintedCoefficient, printed_coefficients};
 use crate::derived::{Arrangement, DeriveError, Expansion, Format};
 use crate::exact::{Number, Rational, rational_to_f64};
-use crate::language::{Coefficient, Field, LanguageError, Operator};
+use crate::language::{Coefficient, Field, LanguageError, Operator, operators};
 use serde::Serialize;
 use std::fmt::Write as _;
 use thiserror::Error;
@@ -50,9 +50,15 @@ pub fn printed_verdicts() -> Result<Vec<PrintedVerdict>, PrintedError> {
 fn verdict(printed: &PrintedCoefficient) -> Result<PrintedVerdict, PrintedError> {
     let order = usize::from(printed.order);
     let coefficient = Coefficient::new(printed.operator, printed.order)?;
-    let expansion = Expansion::of(coefficient.operator().clone(), coefficient.target().cloned(), order)?;
-    let as_printed =
-        Expansion::given(Operator::parse_coefficient(printed.text)?, Field::Scalar, order, expansion.operator.rank())?;
+    // What an equation of its own approximates is nothing but itself.
+    let target = operators::by_id(printed.operator).ok().map(|entry| entry.target);
+    let expansion = Expansion::of(coefficient.operator().clone(), target, order)?;
+    let as_printed = Expansion::given(
+        Operator::parse_coefficient(printed.text)?,
+        Field::Scalar,
+        order,
+        expansion.operator.rank(),
+    )?;
     let difference = expansion.minus(&as_printed, order)?;
     let ground = Arrangement::new(2, 0);
     let norm = |expansion: &Expansion| -> Result<f64, DeriveError> {

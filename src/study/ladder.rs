@@ -5,9 +5,9 @@ use super::plan::{LadderPlan, Plan, Task};
 use super::run::TaskResult;
 use crate::claim::Quantity;
 use crate::kernel::Kernel;
+use crate::language::Subject;
 use crate::measured::summarise;
 use crate::measured::window::{LadderPoint, WindowOptions, power_law};
-use crate::language::Subject;
 
 /// The ladder of one quantity, fitted.
 pub(super) fn fit_ladder(

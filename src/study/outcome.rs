@@ -5,9 +5,9 @@ use super::scene::Scene;
 use crate::claim::{Claim, Judgement, Measured, Quantity, Verdict};
 use crate::exact::rational_to_f64;
 use crate::kernel::Kernel;
+use crate::language::Subject;
 use crate::measured::window::{PowerLaw, Reason};
 use crate::particles::{Disorder, Lattice, VolumeRule};
-use crate::language::Subject;
 
 /// What tells one case from another.
 #[derive(Debug, Clone, PartialEq)]

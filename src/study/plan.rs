@@ -9,9 +9,9 @@ use super::scene::Scene;
 use crate::claim::{Claim, Quantity, Statement};
 use crate::exact::{Rational, rational_text, rational_to_f64};
 use crate::kernel::Kernel;
+use crate::language::Subject;
 use crate::measured::{RegularSpec, SampleSpec};
 use crate::particles::{Disorder, Lattice, Moves, PointGroup, SiteIndex, VolumeRule};
-use crate::language::Subject;
 use crate::sums::{Moment, Reduction};
 use itertools::Itertools;
 use serde::Serialize;
@@ -132,8 +132,11 @@ impl Plan {
         if subjects.is_empty() {
             return;
         }
-        let free: usize =
-            subjects.iter().filter_map(Subject::moment).map(|m| Reduction::of(m, lattice, group).free().len()).sum();
+        let free: usize = subjects
+            .iter()
+            .filter_map(Subject::moment)
+            .map(|m| Reduction::of(m, lattice, group).free().len())
+            .sum();
         let mut rungs = Vec::new();
         for supports in scene.regular_ladder(lattice.dimension(), kernel) {
             self.exact_sums += (free * supports.len()) as u64;
@@ -258,7 +261,9 @@ impl Task {
             disorder: Option<(String, f64, u64)>,
         }
         let (kernel, lattice, rule, subjects) = match self {
-            Self::Regular(spec) => (spec.kernel.canonical_profile(), &spec.lattice, spec.rule, &spec.subjects),
+            Self::Regular(spec) => {
+                (spec.kernel.canonical_profile(), &spec.lattice, spec.rule, &spec.subjects)
+            }
             Self::Samples { spec, .. } => {
                 (spec.kernel.canonical_profile(), &spec.lattice, spec.rule, &spec.subjects)
             }
@@ -345,9 +350,8 @@ fn omissions(scene: &Scene, lattices: &[(&Lattice, PointGroup)]) -> Vec<Omission
                 });
             }
         }
-        for claim in claims
-            .iter()
-            .filter(|claim| needs_regular(claim) && claim.subject.vanishes(lattice, group))
+        for claim in
+            claims.iter().filter(|claim| needs_regular(claim) && claim.subject.vanishes(lattice, group))
         {
             omissions.push(Omission {
                 what: format!("{} on regular {}", claim.subject, lattice.id()),

@@ -56,15 +56,21 @@ impl Folder {
 
     /// Runs `remainder` with these arguments, separated by blanks.
     pub(crate) fn run(&self, arguments: &str) -> Ran {
+        self.run_arguments(&arguments.split_whitespace().collect::<Vec<_>>())
+    }
+
+    /// Runs `remainder` with these arguments, which may hold blanks.
+    pub(crate) fn run_arguments(&self, arguments: &[&str]) -> Ran {
         let output = assert_cmd::Command::new(PROGRAM)
             .current_dir(self.0.path())
-            .args(arguments.split_whitespace())
+            .args(arguments)
             .timeout(Duration::from_secs(120))
             .output()
             .expect("the program starts");
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the program prints UTF-8");
         let code = output.status.code();
         let ran = Ran { code: code.unwrap_or(-1), stdout: text(output.stdout), stderr: text(output.stderr) };
+        let arguments = arguments.join(" ");
         assert!(code.is_some(), "`{arguments}` ended by a signal:\n{}", ran.stderr);
         assert!(
             !ran.stderr.contains("panicked") && !ran.stdout.contains("panicked"),
