@@ -103,7 +103,7 @@ pub fn stencil<T: Number>(
     let mut walk = Walk {
         ground,
         dimension: ground.dimension(),
-        components: if operator.field == Field::Vector { ground.dimension() } else { 1 },
+        field: operator.field,
         bound: vec![None; operator.particles.len()],
         b: HashMap::new(),
         b_hat: HashMap::new(),
@@ -220,8 +220,7 @@ impl<T: Number> Value<T> {
 struct Walk<'a, T> {
     ground: &'a dyn Ground<T>,
     dimension: usize,
-    /// Components of the field.
-    components: usize,
+    field: Field,
     /// By particle of the operator: the particle of the ground, and r_p − r_i.
     bound: Vec<Option<(usize, [T; 3])>>,
     b: HashMap<usize, Tensor<T>>,
@@ -362,15 +361,14 @@ impl<T: Number> Walk<'_, T> {
     fn field(&self, p: Particle) -> Term<T> {
         let (particle, place) = self.bound(p);
         let one = T::from_rational(&int(1));
-        let part = |c: usize| match self.components {
-            1 if self.dimension > 1 => Tensor::scalar(self.dimension, one.clone()),
-            n => {
-                let mut unit: [T; 3] = std::array::from_fn(|_| T::nought());
-                unit[c] = one.clone();
-                if n == 1 { Tensor::scalar(self.dimension, one.clone()) } else { Tensor::vector(n, &unit) }
+        let parts = match self.field {
+            Field::Scalar => vec![Tensor::scalar(self.dimension, one)],
+            Field::Vector => {
+                let unit = |c: usize| std::array::from_fn(|a| if a == c { one.clone() } else { T::nought() });
+                (0..self.dimension).map(|c| Tensor::vector(self.dimension, &unit(c))).collect()
             }
         };
-        Term { particle, place, parts: (0..self.components).map(part).collect() }
+        Term { particle, place, parts }
     }
 
     fn product(&mut self, a: &Node, b: &Node, count: usize) -> Result<Value<T>, StencilError> {
