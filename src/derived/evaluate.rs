@@ -163,7 +163,11 @@ impl<'a, T: Number> Evaluation<'a, T> {
             }
             Symbol::Distance => {
                 let (_, _, square) = pair();
-                // Even powers need no root. What divides by |r_ii| is left out of its sum.
+                // What divides by |r_ii| is left out of its sum, also where it has been cancelled: power 0.
+                if square.is_nought() {
+                    return Ok(Named::scalar(T::nought()));
+                }
+                // Even powers need no root.
                 let (base, power) = match factor.power % 2 {
                     0 => (square, factor.power / 2),
                     _ => (square.root().ok_or_else(|| no_value("a distance is no rational number"))?, factor.power),
