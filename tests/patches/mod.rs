@@ -8,8 +8,8 @@ use remainder::particles::{Cloud, Neighbours, Support};
 /// A cloud with volumes, densities, masses and viscosities in no order, its lists and a kernel. Lengths are in Δ.
 pub(crate) struct Patch {
     pub(crate) cloud: Cloud,
-    lists: Neighbours,
-    kernel: Kernel,
+    pub(crate) lists: Neighbours,
+    pub(crate) kernel: Kernel,
     /// The particle nearest to the origin: far enough from the rim of what was built.
     pub(crate) centre: usize,
 }
@@ -86,10 +86,6 @@ impl Patch {
     pub(crate) fn ground(&self) -> CloudGround<'_> {
         CloudGround::new(&self.cloud, &self.lists, &self.kernel)
     }
-
-    pub(crate) fn neighbours(&self, i: usize) -> Vec<usize> {
-        self.lists.of(i).iter().map(|pair| pair.j as usize).collect()
-    }
 }
 
 /// cond(B)·cond(B̂) of a particle: by what rounding errors grow in what they multiply. Taken with nalgebra from Eqs. (6) and
@@ -125,6 +121,8 @@ pub(crate) fn conditions(ground: &dyn remainder::language::ground::Ground<f64>, 
             through.map(|(c, g)| sum(&[a, b, c], true) * -inverse[(c, g)] * sum(&[g, e, f], false)).sum();
         sum(&[a, b, e, f], true) + rest
     };
-    let hat = DMatrix::from_fn(unknowns.len(), unknowns.len(), |row, column| entry(unknowns[column], unknowns[row]));
+    let hat = DMatrix::from_fn(unknowns.len(), unknowns.len(), |row, column| {
+        entry(unknowns[column], unknowns[row])
+    });
     ratio(&second) * ratio(&hat)
 }
