@@ -435,7 +435,12 @@ impl<T: Number> Walk<'_, T> {
         })?;
         let rrgrad = self.moment(particle, 3, |r, [_, g1, _], _| Some(r.outer(r).outer(r).scaled(&g1)))?;
         // K_{ab,ef}; Σ ω r r ∇W is symmetric, so it does not matter which of its indices meets B.
-        let tensor = fourth.plus(&eegrad.contract(&b, 1).contract(&rrgrad, 1));
+        let mut tensor = fourth.plus(&eegrad.contract(&b, 1).contract(&rrgrad, 1));
+        // Where the two parts cancel, what is left is their rounding: nothing.
+        let largest = |tensor: &Tensor<T>| tensor.values.iter().map(T::size).fold(0.0, f64::max);
+        if largest(&tensor) <= T::SINGULAR * largest(&fourth) {
+            tensor = Tensor::zero(d, 4);
+        }
         let pairs: Vec<(usize, usize)> = (0..d).flat_map(|a| (a..d).map(move |b| (a, b))).collect();
         let (one, two) = (T::from_rational(&int(1)), T::from_rational(&int(2)));
         // Off-diagonal unknowns stand twice in the contraction.
