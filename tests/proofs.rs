@@ -68,7 +68,8 @@ fn error<T: Number>(
 /// By order 0, 1, … `to`: whether all coefficients of that order are what they should be.
 fn exact_orders(id: &str, ground: &dyn Ground<Rational>, to: u8) -> Vec<bool> {
     let entry = operators::by_id(id).unwrap();
-    let stencil = stencil(&entry.operator().unwrap(), ground, 0).unwrap_or_else(|error| panic!("{id}: {error}"));
+    let stencil =
+        stencil(&entry.operator().unwrap(), ground, 0).unwrap_or_else(|error| panic!("{id}: {error}"));
     assert!(stencil.least_norm.is_empty(), "{id}");
     let order = |order| {
         let all = MultiIndex::all(ground.dimension(), order).unwrap();
@@ -113,10 +114,15 @@ fn stencils_are_exact_to_their_degree_and_not_beyond() {
     for (id, degree) in EXACT_TO {
         for dimension in 1..=3 {
             let mut beyond = false;
-            for number in 0..3 {
+            // Rationals with thousands of digits: one arrangement says enough.
+            let numbers = if id == "S4" && dimension == 3 { 1 } else { 3 };
+            for number in 0..numbers {
                 let mut orders = exact_orders(id, &Arrangement::new(dimension, number), degree + 1);
                 let last = orders.pop().unwrap();
-                assert!(orders.iter().all(|exact| *exact), "{id} in {dimension}-D on arrangement {number}: {orders:?}");
+                assert!(
+                    orders.iter().all(|exact| *exact),
+                    "{id} in {dimension}-D on arrangement {number}: {orders:?}"
+                );
                 beyond |= !last;
             }
             assert!(beyond, "{id} in {dimension}-D takes degree {} exactly", degree + 1);
@@ -140,24 +146,39 @@ fn expansions_prove_the_same_degrees() {
     }
 }
 
-/// What no operator with u_i added or alone is: exact on constants.
+/// All operators of the catalogue in 2-D: what is exact on nothing, on constants, and on more.
 #[test]
-fn the_other_operators_are_not_exact_on_constants() {
-    let known = EXACT_TO.map(|(id, _)| id);
-    let mut others = Vec::new();
+fn the_degree_of_every_operator() {
+    let on_nothing = [
+        "F1",
+        "F3",
+        "F4-symmetrised",
+        "S1-7-F1",
+        "S1-7-F3",
+        "S1-8-F1",
+        "S1-8-F3",
+        "S1-9-F1",
+        "S1-9-F3",
+        "S2-10",
+        "S2-12",
+        "G0",
+        "G+",
+        "basa-8",
+        "basa-9",
+        "A",
+        "B",
+    ];
     for entry in operators::catalogue() {
-        let expansion = Expansion::of(entry.operator().unwrap(), Some(entry.target), 1).unwrap();
-        match expansion.consistency(2).unwrap() {
-            None => others.push(entry.id),
-            Some(order) => {
-                // Constants alone, shown or at least proved; those of higher degree are in the list above.
-                assert!(known.contains(&entry.id) || order == Order::Exactly(0), "{}: {order}", entry.id);
-            }
-        }
+        let expansion = Expansion::of(entry.operator().unwrap(), Some(entry.target), 2).unwrap();
+        let wanted = match entry.id {
+            id if on_nothing.contains(&id) => None,
+            "S4" => Some(Order::AtLeast(2)),
+            // The renormalised gradients of a linear field are one constant, whose differences vanish.
+            "F4" | "mixed-correction" | "S1-8-F4" => Some(Order::Exactly(1)),
+            _ => Some(Order::Exactly(0)),
+        };
+        assert_eq!(expansion.consistency(2).unwrap(), wanted, "{}", entry.id);
     }
-    let sums = ["F1", "F3", "F4-symmetrised", "S1-7-F1", "S1-7-F3", "S1-8-F1", "S1-8-F3", "S1-9-F1", "S1-9-F3"];
-    let plain = ["S2-10", "S2-12", "G0", "G+", "basa-8", "basa-9", "A", "B"];
-    assert_eq!(others, operators::catalogue().iter().map(|e| e.id).filter(|id| sums.contains(id) || plain.contains(id)).collect::<Vec<_>>());
 }
 
 /// Where rational arithmetic ends: π, and distances between neighbours of i. There floating point says the same to rounding.
@@ -170,7 +191,10 @@ fn where_rational_arithmetic_ends() {
         let ground = Arrangement::new(dimension, 0);
         let exact = stencil::<Rational>(&operator, &ground, 0);
         assert_eq!(exact.unwrap_err(), StencilError::NotRational { what: "π" });
-        assert!(matches!(expansion.coefficients_at::<Rational>(&ground, 0, 1), Err(DeriveError::NoValue { .. })));
+        assert!(matches!(
+            expansion.coefficients_at::<Rational>(&ground, 0, 1),
+            Err(DeriveError::NoValue { .. })
+        ));
         let stencil = stencil::<f64>(&operator, &ground, 0).unwrap();
         let size = |order| {
             let all = MultiIndex::all(dimension, order).unwrap();
@@ -240,7 +264,7 @@ fn inversion_gives_one_degree_more() {
         ("S3", vec![true, true, false, true, false]),
         ("S4", vec![true, true, true, true, false]),
     ] {
-        for dimension in 1..=3 {
+        for dimension in 1..=if id == "S4" { 2 } else { 3 } {
             let ground = Mirrored(Arrangement::new(dimension, 1));
             assert_eq!(exact_orders(id, &ground, 4), exact, "{id} in {dimension}-D");
         }
@@ -269,62 +293,61 @@ fn b_hat_meets_the_indices_of_the_directions() {
     let bracketed = "sum_j 2 V_j ((u_i - u_j) / |r_ij| - e_ij . F4[u]_i) e_ij gradW_ij";
     let bracketed = Operator::parse(bracketed).unwrap();
     let laplacian = Target::plain(Derivative::Laplacian { grad_div: 0 });
-    for dimension in 2..=3 {
-        let ground = Arrangement::new(dimension, 2);
-        let matrix: Vec<Vec<Rational>> = tuples(dimension, 2)
-            .chunks(dimension)
-            .map(|row| row.iter().map(|ab| -sum(&ground, ab, false)).collect())
-            .collect();
-        let b = remainder::exact::inverse(&matrix).unwrap();
-        let bracket = |ab: &[usize], ef: &[usize]| {
-            let mut entry = sum(&ground, &[ab, ef].concat(), true);
-            for cg in tuples(dimension, 2) {
-                let (outer, inner) = (&[ab, &cg[..1]].concat(), &[&cg[1..], ef].concat());
-                entry += sum(&ground, outer, true) * &b[cg[0]][cg[1]] * sum(&ground, inner, false);
-            }
-            entry
-        };
-        let unknowns: Vec<Vec<usize>> = tuples(dimension, 2).into_iter().filter(|ab| ab[0] <= ab[1]).collect();
-        let right: Vec<Rational> = unknowns.iter().map(|ef| int(-i64::from(ef[0] == ef[1]))).collect();
-        let weights: Vec<Rational> = unknowns.iter().map(|ab| int(2 - i64::from(ab[0] == ab[1]))).collect();
-        let solved = |entry: &dyn Fn(&[usize], &[usize]) -> Rational| -> Vec<Rational> {
-            let row = |ef: &Vec<usize>| {
-                unknowns.iter().zip(&weights).map(|(ab, weight)| entry(ab, ef) * weight).collect()
-            };
-            let matrix: Vec<Vec<Rational>> = unknowns.iter().map(row).collect();
-            match solve(&matrix, &right, &weights) {
-                Solution::One(solution) => solution,
-                other => panic!("{other:?}"),
-            }
-        };
-        let tensor = stencil::<Rational>(&bracketed, &ground, 0).unwrap();
-        let values = tuples(dimension, 2);
-        // B̂ : of the tensor's moments, B̂ symmetric.
-        let contracted = |b_hat: &[Rational], alpha: &MultiIndex| -> Rational {
-            let entry = |ab: &Vec<usize>| {
-                let sorted = vec![ab[0].min(ab[1]), ab[0].max(ab[1])];
-                &b_hat[unknowns.iter().position(|known| *known == sorted).unwrap()]
-            };
-            let moments = &tensor.moment(alpha)[0];
-            values.iter().zip(moments).map(|(ab, moment)| entry(ab) * moment).sum()
-        };
-        let theirs = solved(&|ab, ef| bracket(ab, ef));
-        let other = solved(&|ab, ef| bracket(ef, ab));
-        let s4 = operators::by_id("S4").unwrap().operator().unwrap();
-        let s4 = stencil::<Rational>(&s4, &ground, 0).unwrap();
-        let mut off = false;
-        for alpha in MultiIndex::all(dimension, 2).unwrap() {
-            let wanted = laplacian.coefficient(Field::Scalar, &[], &axes(&alpha), 0);
-            assert_eq!(contracted(&theirs, &alpha), wanted, "{alpha}");
-            assert_eq!(s4.moment(&alpha)[0][0], wanted, "{alpha}");
-            off |= contracted(&other, &alpha) != wanted;
+    let dimension = 2;
+    let ground = Arrangement::new(dimension, 2);
+    let matrix: Vec<Vec<Rational>> = tuples(dimension, 2)
+        .chunks(dimension)
+        .map(|row| row.iter().map(|ab| -sum(&ground, ab, false)).collect())
+        .collect();
+    let b = remainder::exact::inverse(&matrix).unwrap();
+    let bracket = |ab: &[usize], ef: &[usize]| {
+        let mut entry = sum(&ground, &[ab, ef].concat(), true);
+        for cg in tuples(dimension, 2) {
+            let (outer, inner) = (&[ab, &cg[..1]].concat(), &[&cg[1..], ef].concat());
+            entry += sum(&ground, outer, true) * &b[cg[0]][cg[1]] * sum(&ground, inner, false);
         }
-        assert!(off, "{dimension}-D: the other reading is exact too");
-        // Constants and linear fields do not tell the two apart.
-        for order in 0..2 {
-            for alpha in MultiIndex::all(dimension, order).unwrap() {
-                assert_eq!(contracted(&other, &alpha), int(0), "{alpha}");
-            }
+        entry
+    };
+    let unknowns: Vec<Vec<usize>> = tuples(dimension, 2).into_iter().filter(|ab| ab[0] <= ab[1]).collect();
+    let right: Vec<Rational> = unknowns.iter().map(|ef| int(-i64::from(ef[0] == ef[1]))).collect();
+    let weights: Vec<Rational> = unknowns.iter().map(|ab| int(2 - i64::from(ab[0] == ab[1]))).collect();
+    let solved = |entry: &dyn Fn(&[usize], &[usize]) -> Rational| -> Vec<Rational> {
+        let row = |ef: &Vec<usize>| {
+            unknowns.iter().zip(&weights).map(|(ab, weight)| entry(ab, ef) * weight).collect()
+        };
+        let matrix: Vec<Vec<Rational>> = unknowns.iter().map(row).collect();
+        match solve(&matrix, &right, &weights) {
+            Solution::One(solution) => solution,
+            other => panic!("{other:?}"),
+        }
+    };
+    let tensor = stencil::<Rational>(&bracketed, &ground, 0).unwrap();
+    let values = tuples(dimension, 2);
+    // B̂ : of the tensor's moments, B̂ symmetric.
+    let contracted = |b_hat: &[Rational], alpha: &MultiIndex| -> Rational {
+        let entry = |ab: &Vec<usize>| {
+            let sorted = vec![ab[0].min(ab[1]), ab[0].max(ab[1])];
+            &b_hat[unknowns.iter().position(|known| *known == sorted).unwrap()]
+        };
+        let moments = &tensor.moment(alpha)[0];
+        values.iter().zip(moments).map(|(ab, moment)| entry(ab) * moment).sum()
+    };
+    let theirs = solved(&|ab, ef| bracket(ab, ef));
+    let other = solved(&|ab, ef| bracket(ef, ab));
+    let s4 = operators::by_id("S4").unwrap().operator().unwrap();
+    let s4 = stencil::<Rational>(&s4, &ground, 0).unwrap();
+    let mut off = false;
+    for alpha in MultiIndex::all(dimension, 2).unwrap() {
+        let wanted = laplacian.coefficient(Field::Scalar, &[], &axes(&alpha), 0);
+        assert_eq!(contracted(&theirs, &alpha), wanted, "{alpha}");
+        assert_eq!(s4.moment(&alpha)[0][0], wanted, "{alpha}");
+        off |= contracted(&other, &alpha) != wanted;
+    }
+    assert!(off, "the other reading is exact too");
+    // Constants and linear fields do not tell the two apart.
+    for order in 0..2 {
+        for alpha in MultiIndex::all(dimension, order).unwrap() {
+            assert_eq!(contracted(&other, &alpha), int(0), "{alpha}");
         }
     }
 }
