@@ -24,7 +24,7 @@ pub(super) enum Symbol {
     SmoothingLength,
     /// V, ρ, m, μ of a particle.
     OfParticle(OfParticle),
-    /// |r_pq|.
+    /// |r_pq|. To the power 0 it is 1, and 0 where p = q.
     Distance,
     /// W_pq.
     Kernel,

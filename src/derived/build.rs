@@ -5,7 +5,7 @@
 
 use super::DeriveError;
 use super::algebra::{Bound, Expression, Factor, Index, Label, Symbol, Term};
-use super::normal::normalised;
+use super::normal::normalised_with;
 use crate::exact::{Rational, int};
 use crate::language::tree::{Kind, Node, OfPair, Particle};
 use crate::language::{Field, Operator};
@@ -218,7 +218,9 @@ impl Builder {
             Kind::Outer(a, b) => return Ok(multiplied(&self.reciprocal(a, n)?, &self.reciprocal(b, n)?)),
             _ => {}
         }
-        let expression = normalised(self.expression(node)?)?;
+        let expression = self.expression(node)?;
+        // Numbers below are those of particles outside.
+        let expression = normalised_with(expression, self.centres.len() as Label)?;
         if expression.is_zero() {
             return Err(DeriveError::DividesByZero { span: node.span.clone() });
         }
@@ -263,7 +265,7 @@ impl Builder {
                 *label = rename(*label);
             }
         });
-        Ok((super::normal::normalised_with(body, outer.len() as Label)?, outer))
+        Ok((normalised_with(body, outer.len() as Label)?, outer))
     }
 }
 

@@ -1,13 +1,17 @@
 //! Which totals an operator conserves.
 //!
-//! Particle j gives particle i what stands under the sum, times the weight of i (V_i, or m_i where the operator is an
-//! acceleration). Σ_i of it vanishes for every field if the exchange is antisymmetric, f_ij = −f_ji; the sum of r_i × f_i
-//! vanishes too if f_ij is parallel to r_ij.
+//! Σ_i w_i ⟨Lu⟩_i, w_i the volume (or the mass, where the operator is an acceleration), is a sum over all pairs, and over all
+//! triples where sums are nested. Sorted by the particle p whose field stands in it, it is Σ_p u_p (…)_p: what multiplies u_p
+//! must vanish identically. So it does where what two particles exchange is antisymmetric, f_ij = −f_ji. The total of
+//! r_i × ⟨Lu⟩_i then vanishes too if what multiplies u_p in Σ_i w_i (r_i − r_p) ⊗ ⟨Lu⟩_i is symmetric: where f_ij is parallel to
+//! r_ij, but also for the symmetrised renormalised gradient, by B_p · Σ ω r ∇W = −I (Bonet & Lok 1999).
+//!
+//! Particles are neighbours of each other: the support is one.
 
 use super::DeriveError;
-use super::algebra::{Expression, Factor, Label, Symbol, Term};
+use super::algebra::{Bound, Expression, Factor, Index, Label, Symbol, Term};
 use super::build::{Substitute, build};
-use super::normal::{difference, normalised_with};
+use super::normal::{difference, normalised, normalised_with};
 use crate::exact::int;
 use crate::language::tree::OfParticle;
 use crate::language::{Field, Operator};
@@ -18,7 +22,7 @@ use std::sync::Arc;
 pub enum Conserved {
     /// Exactly, whatever the field and the arrangement.
     Yes,
-    /// The exchange of two particles is not of that form.
+    /// What would have to vanish does not, as far as its normal form knows.
     No,
     /// The value is no force, so the question has no meaning.
     DoesNotApply,
@@ -34,7 +38,7 @@ pub struct Conservation {
 }
 
 impl Conservation {
-    /// Decides it from the operator's pair term.
+    /// Decides it from what multiplies the field of each particle.
     ///
     /// # Errors
     /// [`DeriveError`].
@@ -55,57 +59,81 @@ impl Conservation {
             _ => return Ok(Self { total: Conserved::DoesNotApply, angular: Conserved::DoesNotApply }),
         };
         let expression = build(operator, Substitute::Itself)?;
-        // A field at i alone, under no sum, is no exchange; neither is what goes through a third particle.
-        let is_pair = |term: &Term| matches!(&term.bounds[..], [bound] if bound.centre == 0);
-        if !expression.terms.iter().all(is_pair) {
+        let by_field = |term: &Term| by_field(term, weight);
+        let terms: Vec<Sorted> = expression.terms.iter().map(by_field).collect::<Result<_, _>>()?;
+        let of_terms = |free: Vec<Index>, terms| normalised(Expression { free, terms });
+        let total =
+            of_terms(expression.free.clone(), terms.iter().map(|sorted| sorted.term.clone()).collect())?;
+        if !total.is_zero() {
             return Ok(no(angular_no));
         }
-        // f_ij with j as particle 1 and no sum; f_ji with the two exchanged.
-        let (one, two): (Label, Label) = (1, 2);
-        let opened = |first: Label, second: Label| {
-            let terms = expression.terms.iter().map(|term| {
-                let mut term = term.clone();
-                let j = term.bounds[0].particle;
-                term.bounds.clear();
-                let mut sign = 1;
-                for factor in &mut term.factors {
-                    for label in &mut factor.particles {
-                        *label = if *label == j { second } else { first };
-                    }
-                    if factor.symbol == Symbol::Separation && factor.particles[0] > factor.particles[1] {
-                        factor.particles.reverse();
-                        sign = -sign;
-                    }
-                }
-                for factor in &mut term.factors {
-                    sort_particles(factor)?;
-                }
-                term.coefficient *= int(sign);
-                term.factors.push(Factor::new(Symbol::OfParticle(weight), &[first], &[]));
-                Ok(term)
-            });
-            let terms = terms.collect::<Result<_, DeriveError>>()?;
-            Ok::<_, DeriveError>(Expression { free: expression.free.clone(), terms })
+        let [b] = expression.free[..] else {
+            return Ok(Self { total: Conserved::Yes, angular: Conserved::DoesNotApply });
         };
-        let (here, there) = (opened(one, two)?, opened(two, one)?);
-        let there = there.map(|term| term.coefficient *= int(-1));
-        let here = normalised_with(here, 3)?;
-        if !difference(&here, &normalised_with(there, 3)?)?.is_zero() {
-            return Ok(no(angular_no));
-        }
-        let along = |term: &Term| {
-            let free = expression.free.first();
-            term.factors
-                .iter()
-                .any(|factor| factor.symbol == Symbol::Separation && factor.indices.first() == free)
-        };
-        let angular = match (acts_as_force, here.terms.iter().all(along)) {
-            (false, _) => Conserved::DoesNotApply,
-            (true, true) => Conserved::Yes,
-            (true, false) => Conserved::No,
+        let used =
+            expression.terms.iter().flat_map(|term| term.factors.iter().flat_map(|factor| &factor.indices));
+        let a = used.copied().max().unwrap_or(0) + 1;
+        // (r_i − r_p)_a, one step of the way after the other; both signs turn.
+        let with_steps = terms.iter().flat_map(|sorted| {
+            sorted.way.iter().map(|step| {
+                let mut term = sorted.term.clone();
+                term.factors.push(Factor::new(Symbol::Separation, &[step.centre, step.particle], &[a]));
+                term
+            })
+        });
+        let with_steps: Vec<Term> = with_steps.collect();
+        let tensor = of_terms(vec![a, b], with_steps.clone())?;
+        let transposed = of_terms(vec![b, a], with_steps)?;
+        let angular = match difference(&tensor, &transposed)?.is_zero() {
+            true => Conserved::Yes,
+            false => Conserved::No,
         };
         Ok(Self { total: Conserved::Yes, angular })
     }
+}
+
+/// A term with the particle of its field as particle 0.
+struct Sorted {
+    term: Term,
+    /// The sums that lead from that particle to i.
+    way: Vec<Bound>,
+}
+
+/// A term of w_i ⟨Lu⟩_i summed over i, with its sums turned round so that they start from the particle of the field.
+fn by_field(term: &Term, weight: OfParticle) -> Result<Sorted, DeriveError> {
+    let mut term = term.clone();
+    term.factors.push(Factor::new(Symbol::OfParticle(weight), &[0], &[]));
+    let fields = term.factors.iter().filter(|factor| matches!(factor.symbol, Symbol::FieldAt(_)));
+    let field: Label = fields.map(|factor| factor.particles[0]).next().unwrap_or(0);
+    let mut way = Vec::new();
+    let mut at = field;
+    while let Some(place) = term.bounds.iter().position(|bound| bound.particle == at) {
+        let Bound { particle, centre } = term.bounds.remove(place);
+        way.push(Bound { particle: centre, centre: particle });
+        at = centre;
+    }
+    for factor in term.factors.iter_mut().filter(|factor| factor.symbol == Symbol::Separation) {
+        if way.iter().any(|step| factor.particles == [step.particle, step.centre]) {
+            factor.particles.reverse();
+            term.coefficient *= int(-1);
+        }
+    }
+    term.bounds.splice(0..0, way.iter().copied());
+    // The two ends exchange their names.
+    let exchange = |label: &mut Label| {
+        *label = match *label {
+            0 => field,
+            label if label == field => 0,
+            label => label,
+        }
+    };
+    for bound in term.bounds.iter_mut().chain(&mut way) {
+        exchange(&mut bound.particle);
+        exchange(&mut bound.centre);
+    }
+    term.factors.iter_mut().flat_map(|factor| &mut factor.particles).for_each(exchange);
+    term.factors.iter_mut().try_for_each(sort_particles)?;
+    Ok(Sorted { term, way })
 }
 
 /// The particles of 1/x(p, q) in rising order, x changed to match: 1/(ρ_p + ρ_q) is one thing.

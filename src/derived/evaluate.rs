@@ -172,7 +172,11 @@ impl<'a, T: Number> Evaluation<'a, T> {
             }
             Symbol::Distance => {
                 let (_, _, square) = pair();
-                // Even powers need no root. What divides by |r_ii| is left out of its sum.
+                // What divides by |r_ii| is left out of its sum, also where it has been cancelled: power 0.
+                if square.is_nought() {
+                    return Ok(Named::scalar(T::nought()));
+                }
+                // Even powers need no root.
                 let (base, power) = match factor.power % 2 {
                     0 => (square, factor.power / 2),
                     _ => (
@@ -310,7 +314,12 @@ impl<'a, T: Number> Evaluation<'a, T> {
         let row = |(e, f): &(usize, usize)| {
             pairs.iter().zip(&weights).map(|((a, b), w)| w.clone() * entry(*a, *b, *e, *f)).collect()
         };
-        let matrix: Vec<Vec<T>> = pairs.iter().map(row).collect();
+        let mut matrix: Vec<Vec<T>> = pairs.iter().map(row).collect();
+        // Where the two parts of the bracket cancel, what is left is their rounding: nothing.
+        let largest = |values: &mut dyn Iterator<Item = &T>| values.map(T::size).fold(0.0, f64::max);
+        if largest(&mut matrix.iter().flatten()) <= T::SINGULAR * largest(&mut fourth.iter()) {
+            matrix.iter_mut().flatten().for_each(|entry| *entry = T::nought());
+        }
         let right: Vec<T> = pairs.iter().map(|(e, f)| number(if e == f { -1 } else { 0 })).collect();
         let solution = match solve(&matrix, &right, &weights) {
             Solution::One(solution) | Solution::Least { solution, .. } => solution,

@@ -5,7 +5,7 @@
 //! - `build`: from an operator's tree to its expression, the Taylor series in place of the field.
 //! - `expansion`: order by order, what multiplies ∇^m u, and what is left when the target is taken off.
 //! - `arrangement`: particles with rational places, on which what is left is shown not to vanish.
-//! - `conserve`: which sums are conserved, from the antisymmetry of what two particles exchange.
+//! - `conserve`: which sums are conserved, whatever the field.
 
 mod algebra;
 mod arrangement;

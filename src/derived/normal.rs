@@ -137,7 +137,17 @@ fn gather(term: &mut Term) {
             None => gathered.push(factor),
         }
     }
-    gathered.retain(|factor| factor.power != 0);
+    // |r_pq|⁰ is 1 but for p = q, where what divided by the distance is left out. An r_pq in the term says so already.
+    let tells_apart = |pair: &Factor| {
+        pair.symbol == Symbol::Distance
+            && !gathered.iter().any(|other| {
+                other.symbol == Symbol::Separation
+                    && other.particles.iter().all(|p| pair.particles.contains(p))
+            })
+    };
+    let kept: Vec<bool> = gathered.iter().map(|factor| factor.power != 0 || tells_apart(factor)).collect();
+    let mut kept = kept.into_iter();
+    gathered.retain(|_| kept.next().unwrap_or(true));
     term.factors = gathered;
 }
 

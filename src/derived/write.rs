@@ -324,6 +324,10 @@ impl<'a> Writer<'a> {
             Symbol::OfParticle(OfParticle::Density) => under(self.pick("ρ", "\\rho"), &pair),
             Symbol::OfParticle(OfParticle::Mass) => under("m", &pair),
             Symbol::OfParticle(OfParticle::Viscosity) => under(self.pick("μ", "\\mu"), &pair),
+            Symbol::Distance if factor.power == 0 => {
+                let [p, q] = [0, 1].map(|place| self.particle(factor.particles[place]));
+                return format!("[{p} {} {q}]", self.pick("≠", "\\neq"));
+            }
             Symbol::Distance => format!("|{}|", under(self.pick("r", "\\mathbf{r}"), &pair)),
             Symbol::Kernel => under("W", &pair),
             Symbol::Slope => under(self.pick("(W′/r)", "(W'/r)"), &pair),

@@ -169,7 +169,8 @@ fn coefficient_norms(spec: &RegularSpec, support: &Rational) -> Result<Vec<Regul
     };
     let volumes = vec![volume; places.len()];
     let kernel_of_centre = kernel_of_centre(&evaluator, &of_centre, places.len());
-    let patch = Patch { dimension, evaluator: &evaluator, h, centre, of_centre, kernel_of_centre, volumes, places };
+    let patch =
+        Patch { dimension, evaluator: &evaluator, h, centre, of_centre, kernel_of_centre, volumes, places };
     let values = coefficients(&spec.subjects, &patch)?;
     let norms = asked.iter().zip(values).map(|(coefficient, (components, magnitude))| {
         let power = Subject::Coefficient((*coefficient).clone()).length_power();

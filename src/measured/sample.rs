@@ -4,7 +4,9 @@
 //! Frobenius norm |S − S^reg|, in units of h. Sample n is a pure function of (seed, n, lattice site): R does not change it,
 //! nor does the number of threads.
 
-use super::coefficient::{Patch, coefficients, kernel_of_centre, made_ready, norm as coefficient_norm, target_components};
+use super::coefficient::{
+    Patch, coefficients, kernel_of_centre, made_ready, norm as coefficient_norm, target_components,
+};
 use super::stencil::StencilError;
 use crate::exact::rational_to_f64;
 use crate::kernel::{Evaluator, Kernel};
