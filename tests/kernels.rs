@@ -332,7 +332,7 @@ fn a_scene_defines_kernels_and_its_errors_have_line_and_column() {
     let mine =
         "[[define.kernel]]\nid = \"mine\"\npieces = [{ to = \"1\", coefficients = [\"1\", \"-1\"] }]\n";
     let read = scene(mine, "\"mine\", \"wendland-c6\"").unwrap();
-    assert_eq!((read.kernels[0].id(), read.kernels[0].beta()), ("mine", 0));
+    assert_eq!((read.cases[0].kernel.id(), read.cases[0].kernel.beta()), ("mine", 0));
     let twice = scene(&format!("{mine}{mine}"), "\"mine\"").unwrap_err();
     assert!(twice.contains("scene.toml:6:6") && twice.contains("twice"), "{twice}");
     let shadow = scene(&mine.replace("mine", "cubic-spline"), "\"cubic-spline\"").unwrap_err();

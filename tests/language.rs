@@ -61,7 +61,7 @@ fn faults_point_at_their_place() {
         ("sum_j V_j u_j (W_ij + gradW_ij)", "gradW_ij", "rank 1 is added to one of rank 0"),
         ("sum_j V_j u_j (W_ij + lapW_ij)", "lapW_ij", "is added to"),
         ("sum_j V_j u_j lapw_ij", "lapw_ij", "no quantity 'lapw'"),
-        ("sum_j V_j (u_j - u_i W_ij", "", "expected ')'"),
+        ("sum_j V_j W_ij (u_j - u_i", "", "expected ')'"),
         ("sum_j V_j u_j W_ij)", ")", "expected the end"),
         ("sum_j V_j u_j W_ij / 0", "0", "divides by zero"),
         ("sum_j V_j u_j W_ij / gradW_ij", "gradW_ij", "the divisor has rank 1"),

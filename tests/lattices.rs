@@ -217,7 +217,7 @@ fn scene(define: &str, id: &str) -> Result<Scene, String> {
 }
 
 fn own(define: &str) -> Lattice {
-    scene(&format!("id = \"own\"\n{define}"), "own").unwrap().lattices.remove(0)
+    scene(&format!("id = \"own\"\n{define}"), "own").unwrap().cases.remove(0).lattice
 }
 
 /// Every component of some moments at two supports, as text of the closed form.

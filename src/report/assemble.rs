@@ -2,9 +2,12 @@
 
 use super::record::*;
 use crate::claim::{Measured, Statement};
+use crate::derived::{Conservation, Conserved, Expansion, Format};
 use crate::exact::rational_text;
-use crate::language::Subject;
+use crate::language::{Coefficient, Subject};
 use crate::study::{CaseId, JudgedCase, LadderFit, MeasuredColumn, Outcome, Varies};
+use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// Significant digits of fitted numbers: what passes through statrs is the same on every machine to that many.
 const DIGITS: usize = 8;
@@ -131,10 +134,7 @@ fn fitted(measured: Measured) -> Estimate {
 }
 
 fn case(case: &CaseId, subject: &Subject) -> Case {
-    let of_operator = subject
-        .coefficient()
-        .map(|coefficient| [("operator", coefficient.id().into()), ("order", coefficient.order().into())]);
-    let more = of_operator.into_iter().flatten().map(|(name, value)| (name.to_owned(), value));
+    let more = subject.coefficient().map(of_operator).unwrap_or_default();
     Case {
         source: "lattice".into(),
         dimension: case.dimension as u8,
@@ -142,7 +142,7 @@ fn case(case: &CaseId, subject: &Subject) -> Case {
         lattice: Some(case.lattice.clone()),
         disorder: Some(case.disorder.as_ref().map_or("none".into(), ToString::to_string)),
         volume_rule: case.rule.to_string(),
-        more: more.collect(),
+        more,
     }
 }
 
@@ -195,4 +195,30 @@ fn fit(ladder: &LadderFit) -> Option<Fit> {
                    the slope of the finer half of the window"
             .into(),
     })
+}
+
+/// Which coefficient of which operator, as the expansion has it, and what the operator conserves.
+fn of_operator(coefficient: &Coefficient) -> BTreeMap<String, Value> {
+    let mut more = BTreeMap::from([
+        ("operator".to_owned(), Value::from(coefficient.id())),
+        ("order".to_owned(), Value::from(coefficient.order())),
+    ]);
+    let order = usize::from(coefficient.order());
+    let operator = coefficient.operator().clone();
+    if let Ok(expansion) = Expansion::of(operator, coefficient.target().cloned(), order) {
+        let terms = expansion.printed(Format::Text).pop().map(|printed| printed.terms).unwrap_or_default();
+        let text = if terms.is_empty() { "0".to_owned() } else { terms.join(" ") };
+        more.insert("expansion".into(), text.trim_start_matches("+ ").into());
+    }
+    if let Ok(conserves) = Conservation::of(coefficient.operator()) {
+        let text = match (conserves.total, conserves.angular) {
+            (Conserved::Yes, Conserved::Yes) => "linear and angular momentum",
+            (Conserved::Yes, Conserved::No) => "linear momentum",
+            (Conserved::Yes, Conserved::DoesNotApply) => "the total",
+            (Conserved::No, _) => "nothing",
+            (Conserved::DoesNotApply, _) => "does not apply",
+        };
+        more.insert("conserves".into(), text.into());
+    }
+    more
 }

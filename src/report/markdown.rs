@@ -61,6 +61,9 @@ pub fn markdown(report: &Report) -> String {
 
 fn section_text(text: &mut String, section: &Section) {
     let _ = writeln!(text, "\n## `{}`\n\n{}, {}.\n", section.id, cell(&section.statement), section.location);
+    if let Some([operator, expansion, conserves]) = &section.operator {
+        let _ = writeln!(text, "Expansion of {operator}: `{expansion}`. It conserves: {conserves}.\n");
+    }
     text.push_str("| D | case | published d̃, Δ/h | measured d̃ | measured Δ/h | verdict | why |\n|---|---|---|---|---|---|---|\n");
     for row in &section.rows {
         let _ = writeln!(

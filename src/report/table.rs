@@ -18,6 +18,8 @@ pub struct Section {
     pub why: String,
     /// What the scene expects.
     pub expected: Option<Verdict>,
+    /// Of a claim on an operator: the coefficient by its expansion, and what the operator conserves.
+    pub operator: Option<[String; 3]>,
     /// The cases.
     pub rows: Vec<Row>,
 }
@@ -57,10 +59,16 @@ pub fn sections(report: &Report) -> Vec<Section> {
                 verdict: rolled.verdict,
                 why: rolled.why.clone(),
                 expected: rolled.expected,
+                operator: entries.first().and_then(|entry| operator(entry)),
                 rows: entries.iter().map(|entry| row(entry, &shown)).collect(),
             }
         })
         .collect()
+}
+
+fn operator(entry: &ClaimEntry) -> Option<[String; 3]> {
+    let text = |name: &str| entry.case.more.get(name).and_then(|value| value.as_str()).map(str::to_owned);
+    Some([text("operator")?, text("expansion")?, text("conserves")?])
 }
 
 /// The fields of a case that differ within the report, besides the dimension and the disorder.

@@ -206,7 +206,7 @@ impl Scene {
 
     /// The ladder in Δ/h on regular particles: by rung, R/Δ and its offsets.
     pub fn regular_ladder(&self, dimension: usize, kernel: &Kernel) -> Vec<Vec<Rational>> {
-        let default = [(8, 512, 13, 16), (8, 256, 15, 16), (6, 96, 13, 16)][dimension - 1];
+        let default = [(8, 512, 13, 16), (8, 256, 15, 16), (6, 64, 11, 16)][dimension - 1];
         let ladder = dx_ladder(&self.raw.ladders.regular, dimension, default);
         self.supports(&ladder, kernel)
     }

@@ -60,8 +60,8 @@ fn unknown_names() {
         },
         Fault {
             good: "\"fatehi-eq-28\"",
-            bad: "|\"fatehi-table-3\"",
-            says: &["no claim 'fatehi-table-3'", "did you mean 'fatehi-table-2'?", "remainder list claims"],
+            bad: "|\"fatehi-tabel-2\"",
+            says: &["no claim 'fatehi-tabel-2'", "did you mean 'fatehi-table-2'?", "remainder list claims"],
         },
         Fault {
             good: "moment = \"sum_ddw\"",

@@ -195,7 +195,7 @@ fn what_is_listed_can_be_named() {
     let folder = Folder::new();
     let all: Value = serde_json::from_str(&folder.run_to(0, "list --json").stdout).expect("JSON");
     let names: Vec<&String> = all.as_object().expect("an object").keys().collect();
-    assert_eq!(names, ["claims", "disorders", "kernels", "lattices", "moments", "volume_rules"]);
+    assert_eq!(names, ["claims", "disorders", "kernels", "lattices", "moments", "operators", "volume_rules"]);
     let claims: Value = serde_json::from_str(&folder.run_to(0, "list claims --json").stdout).expect("JSON");
     assert_eq!(claims.as_object().map(serde_json::Map::len), Some(1));
     assert_eq!(claims["claims"], all["claims"]);
