@@ -1,7 +1,10 @@
 //! What an operator conserves, and how its value turns with the particles, in numbers.
 //!
-//! Two modules are compared: `derived::Conservation`, decided from the form of the exchange between two particles, and
+//! Two modules are compared: `derived::Conservation`, decided from what multiplies the field of each particle, and
 //! `measured::stencil`, summed over all particles of an open cloud with a random field.
+//!
+//! Planted errors that were seen to fail: r_ij not turned with the pair, V_i for m_i, the torque's tensor not compared with its
+//! transpose, B_i for B_j, and ∇W of a cloud scaled with 1/R for 1/R².
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 mod patches;

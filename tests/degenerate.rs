@@ -2,6 +2,10 @@
 //! taken with the least norm and said to be, and nothing is ever NaN.
 //!
 //! Exact and floating-point arithmetic are compared, and `measured::stencil` with `derived`, which have each their own B̂.
+//!
+//! Planted errors that were seen to fail: a line not told from a plane, particle 0 blamed for its neighbour, B̂ of a bracket
+//! that is all rounding, equations without a solution taken for solved, a least norm that is not flagged, B̂ with its
+//! sign turned, and twice the second term of the rule that cancels it.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 use remainder::derived::{DeriveError, Expansion};

@@ -4,6 +4,11 @@
 //! Two modules are compared: `derived`, where the Taylor series is put into the operator and the sums are simplified before a
 //! number is seen, and `measured::stencil`, where the tree is walked over particles and its weights are summed against
 //! monomials. They have in common the tree, the ground and `exact::linear`.
+//!
+//! Planted errors that were seen to fail: a Taylor series without its 1/m!, ∇∇W without δ_ab W′/r or with W′/r added to its
+//! other part, ∇·∇W with 2 for D, B_i for B_j, B̂ contracted with the indices of Σ ω r r ∇W, and twice the second term of the
+//! rule that cancels B̂. By the random operators alone: e·e = 1 at j = i, and a sum in a divisor that takes the name of
+//! the particle it belongs to.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 mod patches;

@@ -4,6 +4,10 @@
 //! Two modules are compared: `measured::stencil`, in rationals on arrangements without symmetry, and `derived`, whose proof
 //! is that a coefficient vanishes identically. The target's coefficients come from `language::Target` and are themselves
 //! checked against derivatives of monomials.
+//!
+//! Planted errors that were seen to fail: B̂ contracted with the indices of Σ ω r r ∇W, twice the second term of the rule that
+//! cancels B̂, a Taylor series without its 1/m!, coefficients that are never shown not to vanish, mixed derivatives counted
+//! once for each order of their indices, and r_j − r_i with its sign turned.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 use remainder::derived::{Arrangement, DeriveError, Expansion};
