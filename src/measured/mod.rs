@@ -7,6 +7,7 @@ mod coefficient;
 mod double_double;
 mod error;
 pub mod fit;
+mod program;
 mod regular;
 mod sample;
 mod stencil;
@@ -14,6 +15,7 @@ mod tensor;
 pub mod window;
 
 pub use error::{FitError, Input};
+pub use program::{Fields, Program, ProgramError};
 pub use regular::{RegularError, RegularNorm, RegularRung, RegularSpec, regular_rung};
 pub use sample::{
     CLOSEST, MomentStatistics, SampleBlock, SampleError, SampleSpec, Sampler, Summary, is_precise,
