@@ -3,6 +3,7 @@
 //! Both are timed in turn, and the medians, the least times and their ratios printed. Fails if their values differ.
 
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed benchmark.
+#![allow(clippy::needless_range_loop)] // Written by hand as one would, with indices.
 
 use remainder::kernel::by_id;
 use remainder::language::operators;

@@ -2,7 +2,7 @@
 //! share the tree and the neighbour lists, and nothing else. Seen to fail with a sign of G_2 turned, with B and B̂ applied
 //! to the neighbour instead of the particle, and with the lanes that hold no pair left at distance 0.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::explicit_counter_loop)] // A failed unwrap is a failed test.
 
 use remainder::exact::rational_to_f64;
 use remainder::kernel::{Evaluator, Kernel, by_id};

@@ -66,14 +66,10 @@ fn text(audit: &Audit) -> String {
     line("\nshape (certified)".into());
     line(format!("  w ≥ 0: {}", answer(audit.nonnegative, "negative", &audit.negative_between)));
     line(format!("  w falls: {}", answer(audit.decreasing, "rises", &audit.rising_between)));
-    line(
-        "\nS2 (Fatehi & Manzari 2011, Eqs. 10 to 12) keeps monotone data monotone on a line, square or"
-            .into(),
-    );
-    line(
-        "cubic lattice if ∇²W < 0 only nearer than the nearest neighbour, q* h ≤ Δ (they print the reverse)"
-            .into(),
-    );
+    line(wrapped(
+        "\nS2 (Fatehi & Manzari 2011, Eqs. 10 to 12) keeps monotone data monotone on a line, square or cubic lattice if \
+         ∇²W < 0 only nearer than the nearest neighbour, q* h ≤ Δ (they print the reverse)",
+    ));
     for inflection in &audit.inflections {
         line(format!(
             "  {}-D  q* = {}: h/Δ ≤ {:.6}, R/Δ ≤ {:.6}",

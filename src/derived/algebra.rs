@@ -106,7 +106,7 @@ impl Factor {
         Self { symbol, particles: particles.to_vec(), indices: indices.to_vec(), power: 1 }
     }
 
-    pub(super) fn to_power(mut self, power: i32) -> Self {
+    pub(super) fn raised(mut self, power: i32) -> Self {
         self.power = power;
         self
     }

@@ -73,9 +73,7 @@ impl Builder {
                 let mut sum = Expression::default();
                 for (place, node) in nodes.iter().enumerate() {
                     let next = self.expression(node)?;
-                    if place == 0 {
-                        sum = next;
-                    } else if sum.is_zero() {
+                    if place == 0 || sum.is_zero() {
                         sum = next;
                     } else if !next.is_zero() {
                         let free = sum.free.clone();
@@ -177,7 +175,7 @@ impl Builder {
             OfPair::Hessian => self.rank_two(Symbol::Hessian, &pair),
             OfPair::Separation => self.separation(p, q),
             OfPair::Direction => {
-                multiplied(&one(scalar(Symbol::Distance).to_power(-1)), &self.separation(p, q))
+                multiplied(&one(scalar(Symbol::Distance).raised(-1)), &self.separation(p, q))
             }
             OfPair::Gradient => multiplied(&one(scalar(Symbol::Slope)), &self.separation(p, q)),
         }
@@ -234,7 +232,7 @@ impl Builder {
             }
         }
         let (body, particles) = self.closed(expression)?;
-        let factor = Factor::new(Symbol::Reciprocal(Arc::new(body)), &particles, &[]).to_power(n);
+        let factor = Factor::new(Symbol::Reciprocal(Arc::new(body)), &particles, &[]).raised(n);
         Ok(Expression::scalar(Term::new(Rational::one(), vec![factor])))
     }
 

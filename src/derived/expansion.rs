@@ -284,7 +284,7 @@ fn target_expression(target: &Target, field: Field) -> Expression {
             [(OfParticle::Density, target.density), (OfParticle::Viscosity, target.viscosity)]
         {
             if power != 0 {
-                factors.push(Factor::new(Symbol::OfParticle(quantity), &[0], &[]).to_power(power));
+                factors.push(Factor::new(Symbol::OfParticle(quantity), &[0], &[]).raised(power));
             }
         }
         factors

@@ -105,7 +105,7 @@ fn contract_self(term: &mut Term) -> bool {
                     term.factors.remove(twin);
                     let mut pair = particles;
                     pair.sort_unstable();
-                    term.factors[place] = Factor::new(Symbol::Distance, &pair, &[]).to_power(2);
+                    term.factors[place] = Factor::new(Symbol::Distance, &pair, &[]).raised(2);
                     return true;
                 }
             }

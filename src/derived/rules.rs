@@ -99,7 +99,7 @@ fn cancel_b(term: &Term, place: usize) -> Option<Vec<Term>> {
 fn cancel_b_hat(term: &Term, place: usize) -> Option<Vec<Term>> {
     let factor = &term.factors[place];
     let centre = factor.particles[0];
-    let inverse_square = Factor::new(Symbol::Distance, &[centre, Label::MAX], &[]).to_power(-2);
+    let inverse_square = Factor::new(Symbol::Distance, &[centre, Label::MAX], &[]).raised(-2);
     let scalars = weights(centre, Some(inverse_square.clone()));
     for bound in (0..term.bounds.len()).filter(|bound| term.bounds[*bound].centre == centre) {
         let Some(found) = cluster(term, bound).filter(|c| c.scalars == scalars && c.indices.len() == 4)
@@ -131,7 +131,7 @@ fn cancel_b_hat(term: &Term, place: usize) -> Option<Vec<Term>> {
             second.factors.push(Factor::new(Symbol::OfParticle(OfParticle::Volume), &[particle], &[]));
             second.factors.push(Factor::new(Symbol::Slope, &[centre, particle], &[]));
             if distance {
-                second.factors.push(Factor::new(Symbol::Distance, &[centre, particle], &[]).to_power(-2));
+                second.factors.push(Factor::new(Symbol::Distance, &[centre, particle], &[]).raised(-2));
             }
             let r = indices.map(|index| Factor::new(Symbol::Separation, &[centre, particle], &[index]));
             second.factors.extend(r);

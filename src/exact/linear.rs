@@ -88,9 +88,9 @@ fn eliminate<T: Number>(matrix: &[Vec<T>], right: &[T]) -> (Vec<T>, usize, bool)
             if factor.is_nought() {
                 continue;
             }
-            for column in rank..n {
-                rows[below][column] =
-                    rows[below][column].clone() - factor.clone() * rows[rank][column].clone();
+            let (above, rest) = rows.split_at_mut(below);
+            for (entry, pivot) in rest[0].iter_mut().zip(&above[rank]).skip(rank) {
+                *entry = entry.clone() - factor.clone() * pivot.clone();
             }
             b[below] = b[below].clone() - factor * b[rank].clone();
         }

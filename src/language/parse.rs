@@ -577,10 +577,10 @@ impl Parser<'_> {
         }
         self.at += 1;
         self.expect(']', &opened)?;
-        let after = self.peek().clone();
         // `]_i` is two tokens: the bracket, then a name that is only a subscript.
         let letter = self.bare_subscript()?;
-        let span = self.span(place, &after.span);
+        let last = self.tokens[self.at - 1].span.clone();
+        let span = self.span(place, &last);
         let p = self.particle(letter, &span)?;
         if entry.field.name() != argument {
             let message = format!("{name} acts on {}", entry.field.name());

@@ -239,6 +239,9 @@ impl<T: Number> Value<T> {
     }
 }
 
+/// The neighbours of a particle with their separations.
+type List<T> = Rc<[(usize, [T; 3])]>;
+
 struct Walk<'a, T> {
     ground: &'a dyn Ground<T>,
     dimension: usize,
@@ -247,7 +250,7 @@ struct Walk<'a, T> {
     bound: Vec<Option<(usize, [T; 3])>>,
     b: HashMap<usize, Tensor<T>>,
     b_hat: HashMap<usize, Tensor<T>>,
-    neighbours: HashMap<usize, Rc<[(usize, [T; 3])]>>,
+    neighbours: HashMap<usize, List<T>>,
     least_norm: Vec<usize>,
     /// Monomials about particle i in place of the field, each in each component; else it is left open.
     monomials: Option<Vec<MultiIndex>>,
@@ -375,7 +378,7 @@ impl<'a, T: Number> Walk<'a, T> {
         Ok(total)
     }
 
-    fn list(&mut self, particle: usize) -> Rc<[(usize, [T; 3])]> {
+    fn list(&mut self, particle: usize) -> List<T> {
         self.neighbours.entry(particle).or_insert_with(|| self.ground.neighbours(particle).into()).clone()
     }
 
