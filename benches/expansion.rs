@@ -1,5 +1,7 @@
 //! Expansion of built-in operators to sixth order: aimed at under 50 ms each.
 
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed benchmark.
+
 use divan::Bencher;
 use remainder::derived::Expansion;
 use remainder::language::operators;

@@ -5,7 +5,7 @@
 //!
 //! Planted errors that were seen to fail: r_ij not turned with the pair, V_i for m_i, the torque's tensor not compared with its
 //! transpose, B_i for B_j, and ∇W of a cloud scaled with 1/R for 1/R².
-#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::needless_range_loop)] // A failed unwrap is a failed test.
 
 mod patches;
 #[allow(dead_code)] // Of these the rotations alone.
