@@ -99,6 +99,10 @@ fn the_committed_reports_validate() {
     let mut read = 0;
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path().join("report.json");
+        // Expansions are no study: text, LaTeX, and printed equations beside derived ones.
+        if !path.exists() && path.parent().unwrap().ends_with("expansions") {
+            continue;
+        }
         let value: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
         let faults: Vec<String> = validator.iter_errors(&value).map(|e| e.to_string()).collect();
         assert!(faults.is_empty(), "{}: {faults:?}", path.display());

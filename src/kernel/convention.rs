@@ -18,7 +18,7 @@ pub struct Convention {
 }
 
 const PYSPH: (&str, &str) = ("PySPH", "pysph/base/kernels.py, radius_scale");
-const DUAL: (&str, &str) = ("DualSPHysics", "FunSphKernel.h: R = 2h; JCaseCtes.cpp: h = coefh √D Δ");
+const DUAL: (&str, &str) = ("DualSPHysics", "FunSphKernel.h; JCaseCtes.cpp: h = coefh √D Δ");
 const SPLISH: (&str, &str) = ("SPlisHSPlasH", "SPHKernels.h: m_radius is the support");
 const GADGET: (&str, &str) = ("GADGET-2", "Springel 2005, Eq. (4): h is the support");
 const FATEHI: (&str, &str) = ("Fatehi & Manzari 2011", "Eq. (47)");
@@ -26,7 +26,7 @@ const FATEHI: (&str, &str) = ("Fatehi & Manzari 2011", "Eq. (47)");
 const BASA: (&str, &str) = ("Basa et al. 2009", "§6: about 30 neighbours at Δ/h = 0.637");
 const CHAUSSONNET: (&str, &str) = ("Chaussonnet et al. 2015", "§II.C: 29 neighbours at h/Δ = 1.05");
 /// h = 2σ with σ² the second moment, for these kernels and dimensions.
-const SWIFT: (&str, &str) = ("SWIFT", "kernel_hydro.h: R = γh; kernel_definitions.tex: h = 2σ");
+const SWIFT: (&str, &str) = ("SWIFT", "kernel_hydro.h (γ); kernel_definitions.tex (2σ)");
 
 /// (who and where, kernel, R/h).
 const FIXED: &[((&str, &str), &str, i64)] = &[
