@@ -1,6 +1,5 @@
 //! Compiled operators against the typed tree walked node by node, pair by pair: `measured::Program` and the evaluator below
-//! share the tree and the neighbour lists, and nothing else. Seen to fail with a sign of G_2 turned, with B and B̂ applied
-//! to the neighbour instead of the particle, and with the lanes that hold no pair left at distance 0.
+//! share the tree and the neighbour lists, and nothing else.
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::explicit_counter_loop)] // A failed unwrap is a failed test.
 

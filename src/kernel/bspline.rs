@@ -35,7 +35,7 @@ pub fn quintic_spline() -> Kernel {
     Kernel::of_catalogue("quintic-spline", "quintic B-spline", citation, central(5))
         .printed_by("price-2012, Eq. (8)", int(1), [rational(1, 120), over_pi(7, 478), over_pi(1, 120)])
         // Until commit 4f73366. Copied into many codes, such as Project Chrono (SphGeneral.cuh).
-        .printed_by("PySPH before April 2020", int(1), [None, over_pi(7, 478), over_pi(3, 359)])
+        .printed_by("PySPH until 2020", int(1), [None, over_pi(7, 478), over_pi(3, 359)])
 }
 
 /// The central B-spline of this degree on q ≥ 0, from its truncated powers: on each piece those that are positive there.
