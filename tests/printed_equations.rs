@@ -1,7 +1,5 @@
 //! Fatehi & Manzari's Eqs. (17)–(27) and (48) as printed, beside what the operator does to monomials in rational arithmetic:
 //! `report::printed_verdicts` (algebra) and `measured::stencil` (particles) must agree on which hold.
-//!
-//! Seen to fail: the sign of the second term of Eq. (22) turned in `claim::printed`; the factor 1/3 of Eq. (27) as 1/2.
 
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
