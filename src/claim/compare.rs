@@ -10,7 +10,7 @@
 //! when both exponents are ≥ 0. So the verdict is `confirmed` if all exponents are equal, `bound` if the ratio stays
 //! bounded without that, `refuted` if it does not.
 
-use super::Verdict;
+use super::{Verdict, convergence_power};
 
 /// A measured exponent with its 95 % interval, or one that is known without a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +27,11 @@ impl Measured {
     /// An exponent known without error.
     pub fn exactly(value: f64) -> Self {
         Self { value, low: value, high: value }
+    }
+
+    /// The sum of two exponents; its interval holds whatever lies in both.
+    pub fn plus(self, other: Self) -> Self {
+        Self { value: self.value + other.value, low: self.low + other.low, high: self.high + other.high }
     }
 }
 
@@ -100,7 +105,7 @@ pub fn judge_power_law(published: [f64; 2], measured: [Measured; 2], margin: f64
         }
     };
     let (first, x) = (difference(0), difference(1));
-    let second = Measured { value: first.value + x.value, low: first.low + x.low, high: first.high + x.high };
+    let second = first.plus(x);
     let against: Vec<String> = (0..2)
         .filter(|index| each[*index] != Comparison::Equal)
         .map(|index| format!("{} where {} is published", show(index), published[index]))
@@ -126,6 +131,27 @@ pub fn judge_power_law(published: [f64; 2], measured: [Measured; 2], margin: f64
         verdict: Verdict::Inconclusive,
         why: format!("{against}: the interval crosses the margin of ±{margin}."),
     }
+}
+
+/// Compares the exponent c of Δ at constant h, on which convergence hangs: S ~ Δ^c h^{length − c} falls with Δ exactly if Δ
+/// falls faster than h^{1 − length/c}.
+pub fn judge_convergence(published: f64, measured: Measured, length: i32, margin: f64) -> Judgement {
+    let power = |rate: f64| convergence_power(rate, length);
+    let found = format!(
+        "Δ must fall faster than h^{:.2} [{:.2}, {:.2}], as it goes like Δ^{:.2} at constant h; h^{:.2} is published",
+        power(measured.value),
+        power(measured.high).min(power(measured.low)),
+        power(measured.high).max(power(measured.low)),
+        measured.value,
+        power(published),
+    );
+    let (verdict, so) = match compare_exponent(published, measured, margin) {
+        Comparison::Equal => (Verdict::Confirmed, "the same within the margin"),
+        Comparison::Larger => (Verdict::Bound, "enough, and more than is needed"),
+        Comparison::Smaller => (Verdict::Refuted, "not enough"),
+        Comparison::Undecided => (Verdict::Inconclusive, "the interval crosses the margin"),
+    };
+    Judgement { verdict, why: format!("{found}: {so}.") }
 }
 
 #[cfg(test)]

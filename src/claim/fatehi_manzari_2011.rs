@@ -5,7 +5,7 @@
 //! mean square of S − S^reg. A printed Δ is h · Δ/h: d̃Δ(Δ/h)^n is d̃ h (Δ/h)^{n+1}. In Eqs. (36) and (37) the printed
 //! orders are those of the sums' own values.
 
-use super::{Claim, Powers, Quantity, Statement};
+use super::{BetaExponent, Claim, Powers, Quantity, Statement};
 use crate::exact::int;
 use crate::language::{Coefficient, Subject};
 use crate::sums::Moment;
@@ -418,6 +418,28 @@ const OPERATORS: &[OperatorRow] = &[
     ),
 ];
 
+/// What Sec. 4.2 concludes from Table 3: id, where, operator, m, quantity, exponent of Δ, text.
+const CONVERGENCE: &[(&str, &str, &str, u8, Quantity, &str, &str)] = &[
+    (
+        "fatehi-convergence/F1",
+        "Sec. 4.2, below Table 3",
+        "F1",
+        0,
+        Rms,
+        "beta",
+        "F1 needs Δ to decrease faster than h^{1+1/β}",
+    ),
+    (
+        "fatehi-convergence/S2-10",
+        "Sec. 4.2, below Table 3",
+        "S2-10",
+        0,
+        Value,
+        "beta-1",
+        "the error of S2, Eq. (10), does not vanish except when Δ decreases faster than h^{(β+1)/(β−1)}",
+    ),
+];
+
 const ZEROS: &[(&str, &str, &str, &str)] = &[
     ("fatehi-eq-28/sum_dw#zero", "Eq. (28)", "sum_dw", "Σω∇W vanishes on regular particles"),
     ("fatehi-eq-29/sum_rrdw#zero", "Eq. (29)", "sum_rrdw", "Σωrr∇W vanishes on regular particles"),
@@ -465,12 +487,39 @@ pub(super) fn claims() -> Vec<Claim> {
                 dimensions,
             }
         });
-    power_laws.chain(zeros).chain(operators).collect()
+    let convergence = CONVERGENCE.iter().map(|(id, location, name, order, quantity, rate, text)| {
+        let coefficient = Coefficient::new(name, *order).unwrap_or_else(|error| unreachable!("{error}"));
+        let rate = BetaExponent::parse(rate).unwrap_or_else(|error| unreachable!("{error}"));
+        Claim {
+            id: (*id).into(),
+            source: SOURCE.into(),
+            location: (*location).into(),
+            text: (*text).into(),
+            subject: Subject::Coefficient(coefficient),
+            statement: Statement::Convergence { quantity: *quantity, rate },
+            dimensions: ALL,
+        }
+    });
+    power_laws.chain(zeros).chain(operators).chain(convergence).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::exact::ratio;
+
+    #[test]
+    fn the_conditions_are_those_that_the_text_prints() {
+        for (id, printed) in [("F1", ratio(4, 3)), ("S2-10", int(2))] {
+            let id = format!("fatehi-convergence/{id}");
+            let claim = claims().into_iter().find(|claim| claim.id == id);
+            let Some(Claim { statement: Statement::Convergence { rate, .. }, subject, .. }) = claim else {
+                unreachable!("{id} is a claim on convergence")
+            };
+            // 1 + 1/β and (β+1)/(β−1) for β = 3.
+            assert_eq!(int(1) - int(i64::from(subject.length_power())) / rate.at(3), printed);
+        }
+    }
 
     #[test]
     fn every_claim_has_the_dimension_of_what_it_is_about() {

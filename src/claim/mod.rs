@@ -12,7 +12,7 @@ mod printed;
 mod rollup;
 mod verdict;
 
-pub use compare::{Comparison, Judgement, Measured, compare_exponent, judge_power_law};
+pub use compare::{Comparison, Judgement, Measured, compare_exponent, judge_convergence, judge_power_law};
 pub use error::ClaimError;
 pub use exponents::{BetaExponent, Powers};
 pub use printed::{PrintedCoefficient, printed_coefficients};
@@ -79,6 +79,19 @@ pub enum Statement {
     },
     /// The moment or coefficient vanishes on regular particles.
     Zero,
+    /// The quantity, with d̃ in proportion to Δ, vanishes as Δ → 0 exactly if Δ falls faster than a power of h: that power
+    /// is 1 − L/c for S ~ Δ^c h^{L−c}, where S carries the length L.
+    Convergence {
+        /// The quantity.
+        quantity: Quantity,
+        /// c, from which the paper concludes.
+        rate: BetaExponent,
+    },
+}
+
+/// κ of "Δ must fall faster than h^κ" for a quantity ~ Δ^rate h^{length − rate}: 1 − length/rate.
+pub fn convergence_power(rate: f64, length: i32) -> f64 {
+    1.0 - f64::from(length) / rate
 }
 
 /// One published statement that can be checked.
@@ -98,6 +111,21 @@ pub struct Claim {
     pub statement: Statement,
     /// The dimensions it is made for.
     pub dimensions: &'static [usize],
+}
+
+impl Claim {
+    /// What is to be measured for it; a zero is a matter of symmetry first.
+    pub fn quantity(&self) -> Option<Quantity> {
+        match self.statement {
+            Statement::PowerLaw { quantity, .. } | Statement::Convergence { quantity, .. } => Some(quantity),
+            Statement::Zero => None,
+        }
+    }
+
+    /// Whether it needs disordered particles.
+    pub fn is_disordered(&self) -> bool {
+        self.quantity().is_some_and(Quantity::is_disordered)
+    }
 }
 
 /// All built-in claims.

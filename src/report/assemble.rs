@@ -1,9 +1,9 @@
 //! From an outcome to the record.
 
 use super::record::*;
-use crate::claim::{Measured, Statement};
+use crate::claim::{Measured, Statement, convergence_power};
 use crate::derived::{Conservation, Conserved, Expansion, Format};
-use crate::exact::rational_text;
+use crate::exact::{int, rational_text};
 use crate::language::{Coefficient, Subject};
 use crate::study::{CaseId, JudgedCase, LadderFit, MeasuredColumn, Outcome, Varies};
 use serde_json::Value;
@@ -11,6 +11,9 @@ use std::collections::BTreeMap;
 
 /// Significant digits of fitted numbers: what passes through statrs is the same on every machine to that many.
 const DIGITS: usize = 8;
+
+/// The unit of κ in "Δ must fall faster than h^κ".
+const POWER: &str = "power of h that Δ must fall faster than";
 
 /// The record of an outcome: a pure function of it.
 pub fn assemble(outcome: &Outcome) -> Report {
@@ -74,6 +77,11 @@ fn entry(judged: &JudgedCase, margin: f64) -> ClaimEntry {
             };
             (ClaimKind::PowerLaw, Column { exponents: Some(exponents), ..Column::default() })
         }
+        Statement::Convergence { rate, .. } => {
+            let power = int(1) - int(i64::from(claim.subject.length_power())) / rate.at(judged.case.beta);
+            let power = Estimate::exact(rational_text(&power), Source::Print);
+            (ClaimKind::Constant, Column { value: Some(power), unit: Some(POWER.into()), ..Column::default() })
+        }
     };
     let measured = match &judged.measured {
         MeasuredColumn::Exponents { displacement, dx_over_h, fits } => {
@@ -101,6 +109,22 @@ fn entry(judged: &JudgedCase, margin: f64) -> ClaimEntry {
             };
             Some(Column { exponents: Some(exponents), fits: fits.clone(), ..Column::default() })
         }
+        MeasuredColumn::Rate { rate, fits } => {
+            let power = |rate| significant(convergence_power(rate, claim.subject.length_power()), DIGITS);
+            let ends = [power(rate.low), power(rate.high)];
+            let value = Estimate::float(
+                power(rate.value),
+                ends[0].min(ends[1]),
+                ends[0].max(ends[1]),
+                Source::Fit,
+            );
+            Some(Column {
+                value: Some(value),
+                unit: Some(POWER.into()),
+                fits: fits.clone(),
+                ..Column::default()
+            })
+        }
         MeasuredColumn::ZeroBySymmetry => {
             let zero = Zero { holds: true, by: Some("symmetry".into()), bound: Some(0.0) };
             Some(Column { zero: Some(zero), ..Column::default() })
@@ -122,7 +146,7 @@ fn entry(judged: &JudgedCase, margin: f64) -> ClaimEntry {
         published: Some(published),
         derived: None,
         measured,
-        margin: (kind == ClaimKind::PowerLaw).then_some(margin),
+        margin: (kind != ClaimKind::Zero).then_some(margin),
         verdict: judged.judgement.verdict,
         why: judged.judgement.why.clone(),
     }

@@ -114,11 +114,14 @@ fn row(entry: &ClaimEntry, shown: &[&str]) -> Row {
         {
             (Some(d), Some(x)) if number(&d.value) == "0" => number(&x.value),
             (Some(d), Some(x)) => format!("{}, {}", number(&d.value), number(&x.value)),
-            _ => "0".into(),
+            _ => power(&entry.published).map_or("0".into(), |power| format!("Δ ≪ h^{}", number(&power.value))),
         };
     let zero = entry.measured.as_ref().and_then(|column| column.zero.as_ref());
     let dx_over_h = match (exponent(&entry.measured, |e| &e.dx_over_h), zero) {
         (Some(x), _) => interval(&x),
+        (None, None) if power(&entry.measured).is_some() => {
+            power(&entry.measured).map(|power| format!("h^{}", interval(&power))).unwrap_or_default()
+        }
         (None, Some(zero)) if zero.holds => format!("zero by {}", zero.by.as_deref().unwrap_or("value")),
         (None, Some(zero)) => format!("up to {:.2e}", zero.bound.unwrap_or(f64::NAN)),
         _ => "–".into(),
@@ -137,6 +140,11 @@ fn row(entry: &ClaimEntry, shown: &[&str]) -> Row {
         verdict: entry.verdict,
         why: entry.why.clone(),
     }
+}
+
+/// Of a claim on convergence, the power of h that Δ must fall faster than.
+fn power(column: &Option<Column>) -> Option<Estimate> {
+    column.as_ref().and_then(|column| column.value.clone())
 }
 
 fn number(value: &Number) -> String {

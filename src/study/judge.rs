@@ -6,7 +6,8 @@ use super::plan::{Plan, claims_in};
 use super::run::TaskResult;
 use super::scene::{CaseGroup, Scene};
 use crate::claim::{
-    CaseVerdict, Claim, Judgement, Measured, Powers, Quantity, Statement, Verdict, judge_power_law, roll_up,
+    CaseVerdict, Claim, Judgement, Measured, Quantity, Statement, Verdict, judge_convergence, judge_power_law,
+    roll_up,
 };
 use crate::exact::rational_to_f64;
 use crate::particles::{Disorder, PointGroup};
@@ -21,12 +22,8 @@ pub(super) fn judge(scene: &Scene, plan: &Plan, results: &[TaskResult]) -> Outco
                 continue;
             }
             let vanishes = claim.subject.vanishes(lattice, &PointGroup::of(lattice));
-            let disorders: Vec<Option<&Disorder>> = match &claim.statement {
-                Statement::PowerLaw { quantity, .. } if quantity.is_disordered() => {
-                    disorders.iter().map(Some).collect()
-                }
-                _ => vec![None],
-            };
+            let disorders: Vec<Option<&Disorder>> =
+                if claim.is_disordered() { disorders.iter().map(Some).collect() } else { vec![None] };
             for disorder in disorders {
                 let case = CaseId::new(kernel, lattice, disorder, *rule);
                 let (measured, judgement) = bench.judge_case(claim, &case, vanishes);
@@ -113,26 +110,41 @@ impl Bench<'_> {
                 };
                 (MeasuredColumn::NotZero(largest), judgement)
             }
-            Statement::PowerLaw { quantity, .. } if !quantity.is_disordered() && vanishes => (
+            Statement::PowerLaw { .. } | Statement::Convergence { .. } if !claim.is_disordered() && vanishes => (
                 MeasuredColumn::ZeroBySymmetry,
                 Judgement {
                     verdict: Verdict::Bound,
                     why: "the sum vanishes by symmetry, so every order holds as an upper bound.".into(),
                 },
             ),
-            Statement::PowerLaw { quantity, powers } => self.judge_powers(claim, case, *quantity, powers),
+            Statement::PowerLaw { quantity, powers } => {
+                let published = [&powers.displacement, &powers.dx_over_h]
+                    .map(|exponent| rational_to_f64(&exponent.at(case.beta)));
+                self.judge_exponents(claim, case, *quantity, |[displacement, dx_over_h], fits, margin| {
+                    let judgement = judge_power_law(published, [displacement, dx_over_h], margin);
+                    (MeasuredColumn::Exponents { displacement, dx_over_h, fits }, judgement)
+                })
+            }
+            Statement::Convergence { quantity, rate } => {
+                let published = rational_to_f64(&rate.at(case.beta));
+                let length = claim.subject.length_power();
+                self.judge_exponents(claim, case, *quantity, |[displacement, dx_over_h], fits, margin| {
+                    let rate = displacement.plus(dx_over_h);
+                    let judgement = judge_convergence(published, rate, length, margin);
+                    (MeasuredColumn::Rate { rate, fits }, judgement)
+                })
+            }
         }
     }
 
-    fn judge_powers(
+    /// What `judge` says of the exponents of d̃ and Δ/h, if both are measured.
+    fn judge_exponents(
         &mut self,
         claim: &Claim,
         case: &CaseId,
         quantity: Quantity,
-        powers: &Powers,
+        judge: impl FnOnce([Measured; 2], Vec<String>, f64) -> (MeasuredColumn, Judgement),
     ) -> (MeasuredColumn, Judgement) {
-        let published = [&powers.displacement, &powers.dx_over_h]
-            .map(|exponent| rational_to_f64(&exponent.at(case.beta)));
         let mut fits = Vec::new();
         let mut exponent = |bench: &mut Self, varies: Varies| {
             let fit = bench.fit(claim, case, quantity, varies).ok_or("no ladder was planned for it")?;
@@ -158,10 +170,7 @@ impl Bench<'_> {
             Ok(Measured::exactly(0.0))
         };
         match (along_d, along_dx) {
-            (Ok(displacement), Ok(dx_over_h)) => {
-                let judgement = judge_power_law(published, [displacement, dx_over_h], self.margin);
-                (MeasuredColumn::Exponents { displacement, dx_over_h, fits }, judgement)
-            }
+            (Ok(displacement), Ok(dx_over_h)) => judge([displacement, dx_over_h], fits, self.margin),
             (Err(why), _) | (_, Err(why)) => {
                 let judgement = Judgement { verdict: Verdict::Inconclusive, why: format!("{why}.") };
                 (MeasuredColumn::Nothing { fits }, judgement)

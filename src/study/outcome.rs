@@ -134,6 +134,13 @@ pub enum MeasuredColumn {
         /// Ids of the fits.
         fits: Vec<String>,
     },
+    /// The exponent of Δ at constant h, d̃ in proportion to Δ, on which convergence hangs.
+    Rate {
+        /// The exponent.
+        rate: Measured,
+        /// Ids of the fits.
+        fits: Vec<String>,
+    },
     /// It vanishes by symmetry.
     ZeroBySymmetry,
     /// It does not vanish; its largest norm in units of h.

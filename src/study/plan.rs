@@ -6,7 +6,7 @@
 use super::StudyError;
 use super::outcome::{CaseId, Varies};
 use super::scene::Scene;
-use crate::claim::{Claim, Quantity, Statement};
+use crate::claim::Claim;
 use crate::exact::{Rational, rational_text, rational_to_f64};
 use crate::kernel::Kernel;
 use crate::language::Subject;
@@ -313,19 +313,12 @@ pub(super) fn claims_in(scene: &Scene, dimension: usize) -> Vec<Claim> {
 
 /// What some claim needs on regular particles and symmetry does not settle.
 fn regular_subjects(claims: &[Claim], lattice: &Lattice, group: &PointGroup) -> Vec<Subject> {
-    let needs = |claim: &&Claim| match &claim.statement {
-        Statement::PowerLaw { quantity, .. } => !quantity.is_disordered(),
-        Statement::Zero => true,
-    };
-    let asked = claims.iter().filter(needs).map(|claim| claim.subject.clone()).sorted().dedup();
+    let asked = claims.iter().filter(|claim| !claim.is_disordered()).map(|claim| claim.subject.clone()).sorted().dedup();
     asked.filter(|subject| !subject.vanishes(lattice, group)).collect()
 }
 
 fn disordered_subjects(claims: &[Claim]) -> Vec<Subject> {
-    let needs = |claim: &&Claim| {
-        matches!(claim.statement, Statement::PowerLaw { quantity: Quantity::DisorderDeviation, .. })
-    };
-    claims.iter().filter(needs).map(|claim| claim.subject.clone()).sorted().dedup().collect()
+    claims.iter().filter(|claim| claim.is_disordered()).map(|claim| claim.subject.clone()).sorted().dedup().collect()
 }
 
 fn omissions(scene: &Scene, lattices: &[(&Lattice, PointGroup)]) -> Vec<Omission> {
@@ -351,7 +344,7 @@ fn omissions(scene: &Scene, lattices: &[(&Lattice, PointGroup)]) -> Vec<Omission
             }
         }
         for claim in
-            claims.iter().filter(|claim| needs_regular(claim) && claim.subject.vanishes(lattice, group))
+            claims.iter().filter(|claim| !claim.is_disordered() && claim.subject.vanishes(lattice, group))
         {
             omissions.push(Omission {
                 what: format!("{} on regular {}", claim.subject, lattice.id()),
@@ -400,7 +393,7 @@ fn omissions(scene: &Scene, lattices: &[(&Lattice, PointGroup)]) -> Vec<Omission
             saved: None,
         }));
     }
-    if scene.disorders().next().is_some() && scene.claims.iter().all(needs_regular) {
+    if scene.disorders().next().is_some() && scene.claims.iter().all(|claim| !claim.is_disordered()) {
         omissions.push(Omission {
             what: "all disordered particles".into(),
             why: "no claim is about disorder".into(),
@@ -420,8 +413,4 @@ fn omissions(scene: &Scene, lattices: &[(&Lattice, PointGroup)]) -> Vec<Omission
         });
     }
     omissions
-}
-
-fn needs_regular(claim: &Claim) -> bool {
-    !matches!(&claim.statement, Statement::PowerLaw { quantity, .. } if quantity.is_disordered())
 }

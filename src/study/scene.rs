@@ -104,8 +104,7 @@ impl Scene {
                 ));
             }
         }
-        let disordered = |claim: &Claim| matches!(&claim.statement, Statement::PowerLaw { quantity, .. } if quantity.is_disordered());
-        if cases.iter().all(|group| group.disorders.is_empty()) && claims.iter().any(disordered) {
+        if cases.iter().all(|group| group.disorders.is_empty()) && claims.iter().any(Claim::is_disordered) {
             return Err(text.error_at(
                 "cases",
                 "the claims need disorder, and cases.disorders names no model",
@@ -115,7 +114,7 @@ impl Scene {
         let lattices = cases.iter().map(|group| &group.lattice).unique_by(|lattice| lattice.id());
         // Samples hold the neighbours of i, and no more.
         let nested = |claim: &&Claim| {
-            disordered(claim) && claim.subject.coefficient().is_some_and(Coefficient::is_nested)
+            claim.is_disordered() && claim.subject.coefficient().is_some_and(Coefficient::is_nested)
         };
         if let Some(claim) = claims.iter().find(nested) {
             let message = format!(
