@@ -31,6 +31,8 @@ pub(super) enum Command {
     Kernel(KernelArguments),
     /// Expand an operator: its truncation error term by term, what vanishes and why, what it conserves
     Expand(ExpandArguments),
+    /// The RMS error of an operator or a moment sum on disordered particles, without a sample
+    Rms(RmsArguments),
     /// List what can be named in a scene
     List(ListArguments),
 }
@@ -171,6 +173,81 @@ pub(super) enum ExpandFormat {
     Text,
     Latex,
     Json,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RmsArguments {
+    /// An id of the catalogue (F4), or an operator in the language
+    #[arg(long, value_name = "OPERATOR", allow_hyphen_values = true, required_unless_present = "moment")]
+    pub(super) operator: Option<String>,
+    /// A moment sum in place of an operator: its distance from the continuum limit
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["operator", "field"])]
+    pub(super) moment: Option<String>,
+    /// The field about particle i: 1, x or x²/2; operators on a vector take (field, 0, 0)
+    #[arg(long, value_enum, default_value = "quadratic")]
+    pub(super) field: FieldName,
+    /// MODEL:AMPLITUDE[,key=value…]
+    #[arg(long, value_name = "MODEL:AMPLITUDE")]
+    pub(super) disorder: String,
+    /// Id of the kernel, or a TOML or JSON file with `pieces`
+    #[arg(long, value_name = "NAME|FILE")]
+    pub(super) kernel: String,
+    /// Id of the lattice
+    #[arg(long)]
+    pub(super) lattice: String,
+    /// R/Δ, a decimal or p/q
+    #[arg(long, allow_hyphen_values = true)]
+    pub(super) support_over_dx: String,
+    /// Volumes: constant or number-density
+    #[arg(long, default_value = "constant")]
+    pub(super) volume_rule: String,
+    /// To second order in the displacements, or over their whole law [default: finite for a moment with constant
+    /// volumes, else linearised]
+    #[arg(long, value_enum)]
+    pub(super) model: Option<RmsModel>,
+    /// Put N samples beside it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=100_000_000))]
+    pub(super) sample: Option<u64>,
+    /// Seed of the samples
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u64,
+    /// A scene whose `[[define.kernel]]` and `[[define.lattice]]` may be named as well
+    #[arg(long, value_name = "SCENE")]
+    pub(super) define: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+/// A field about particle i.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum FieldName {
+    /// u = 1
+    Constant,
+    /// u = x
+    Linear,
+    /// u = x²/2
+    Quadratic,
+}
+
+impl FieldName {
+    /// m of x^m/m!.
+    pub(super) fn order(self) -> u8 {
+        match self {
+            Self::Constant => 0,
+            Self::Linear => 1,
+            Self::Quadratic => 2,
+        }
+    }
+}
+
+/// How an expectation is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum RmsModel {
+    /// To second order in the displacements
+    Linearised,
+    /// Over the whole law of the displacements
+    Finite,
 }
 
 #[derive(Debug, Args)]

@@ -8,6 +8,7 @@ mod exit;
 mod expand;
 mod kernel;
 mod progress;
+mod rms;
 mod sums;
 mod terminal;
 
@@ -36,6 +37,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Schema(schema) => catalogue::schema(schema.of),
         Command::Kernel(named) => kernel::audit(named),
         Command::Expand(operator) => expand::expand(operator),
+        Command::Rms(arguments) => rms::rms(arguments),
         Command::List(list) => catalogue::list(list),
     };
     match done {

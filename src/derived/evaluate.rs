@@ -367,12 +367,6 @@ impl<T: Number> Named<T> {
         self
     }
 
-    /// The value at an assignment of its indices.
-    fn value(&self, assigned: &BTreeMap<Index, usize>, d: usize) -> T {
-        let place = self.indices.iter().fold(0, |place, index| place * d + assigned[index]);
-        self.values[place].clone()
-    }
-
     /// The sum of two tensors with the same indices, in any order.
     fn plus(self, other: Self, d: usize) -> Self {
         let aligned = other.ordered(&self.indices, d);
@@ -384,7 +378,8 @@ impl<T: Number> Named<T> {
         if self.indices == indices {
             return self.values;
         }
-        assignments(indices, d).map(|assigned| self.value(&assigned, d)).collect()
+        let steps = self.steps(indices, d);
+        (0..d.pow(indices.len() as u32)).map(|at| self.values[place(at, &steps, d)].clone()).collect()
     }
 
     /// The product, indices in both summed over.
@@ -397,28 +392,34 @@ impl<T: Number> Named<T> {
             self.indices.iter().copied().filter(|index| other.indices.contains(index)).collect();
         let kept = self.indices.iter().chain(&other.indices).copied().filter(|index| !shared.contains(index));
         let kept: Vec<Index> = kept.collect();
-        let values = assignments(&kept, d).map(|outer| {
-            let sums = assignments(&shared, d).map(|mut inner| {
-                inner.extend(&outer);
-                self.value(&inner, d) * other.value(&inner, d)
-            });
-            sums.fold(T::nought(), |sum, product| sum + product)
+        let (outer, inner) = ([self.steps(&kept, d), other.steps(&kept, d)], [self.steps(&shared, d), other.steps(&shared, d)]);
+        let sums = d.pow(shared.len() as u32);
+        let values = (0..d.pow(kept.len() as u32)).map(|at| {
+            let [mine, theirs] = [place(at, &outer[0], d), place(at, &outer[1], d)];
+            let product = |at: usize| {
+                let left = self.values[mine + place(at, &inner[0], d)].clone();
+                left * other.values[theirs + place(at, &inner[1], d)].clone()
+            };
+            (1..sums).fold(product(0), |sum, at| sum + product(at))
         });
         let values = values.collect();
         Self { indices: kept, values }
     }
+
+    /// How far apart two values stand that differ by one in each of these indices; 0 for an index that it does not have.
+    fn steps(&self, indices: &[Index], d: usize) -> Vec<usize> {
+        let own = |index: &Index| self.indices.iter().position(|known| known == index);
+        let step = |at: usize| d.pow((self.indices.len() - 1 - at) as u32);
+        indices.iter().map(|index| own(index).map_or(0, step)).collect()
+    }
 }
 
-/// All assignments of 0…d−1 to the indices, the first the slowest.
-fn assignments(indices: &[Index], d: usize) -> impl Iterator<Item = BTreeMap<Index, usize>> {
-    let indices = indices.to_vec();
-    (0..d.pow(indices.len() as u32)).map(move |at| {
-        let mut rest = at;
-        let mut assigned = BTreeMap::new();
-        for index in indices.iter().rev() {
-            assigned.insert(*index, rest % d);
-            rest /= d;
-        }
-        assigned
+/// Where the assignment `at` of 0…d−1 to some indices, the first the slowest, leads with these steps.
+fn place(at: usize, steps: &[usize], d: usize) -> usize {
+    let mut rest = at;
+    steps.iter().rev().fold(0, |place, step| {
+        let digit = rest % d;
+        rest /= d;
+        place + digit * step
     })
 }

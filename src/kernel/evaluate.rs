@@ -9,6 +9,9 @@ use super::{Kernel, Profile};
 use crate::exact::{Piecewise, Polynomial, Rational, int, rational_to_f64};
 use num_traits::Float;
 
+/// The highest k of G_k.
+pub(super) const MOST_ORDER: usize = 4;
+
 /// Lanes of a block.
 pub(crate) const LANES: usize = 8;
 
@@ -45,8 +48,9 @@ struct Piece<T> {
 }
 
 impl<T: Float> Evaluator<T> {
-    /// Prepares G_0 … G_`order` in `dimension` dimensions.
+    /// Prepares G_0 … G_`order`, at most G_4, in `dimension` dimensions.
     pub fn new(kernel: &Kernel, dimension: usize, order: usize) -> Self {
+        let order = order.min(MOST_ORDER);
         let kappa = kernel.support_over_h();
         // W = R^{-D} F(x), F = σ_D κ^D w(κ x).
         let sigma = kernel
@@ -64,7 +68,7 @@ impl<T: Float> Evaluator<T> {
         Self { shape, order }
     }
 
-    /// G_0 … G_order at x = r/R in each lane. Beyond the support they are zero. At x = 0, G_k is its limit where that
+    /// G_0 … G_order, at most G_2, at x = r/R in each lane. Beyond the support they are zero. At x = 0, G_k is its limit where that
     /// is finite and 0 where it is not: the moments it belongs to vanish there by antisymmetry.
     pub fn evaluate(&self, x: &[T; LANES]) -> RadialValues<T> {
         let mut values = RadialValues { g: [[T::zero(); LANES]; 3] };
@@ -74,7 +78,7 @@ impl<T: Float> Evaluator<T> {
                 for lane in (0..LANES).filter(|lane| x[*lane] < T::one()) {
                     let x = x[lane].to_f64().unwrap_or(f64::NAN);
                     let exponential: T = cast(libm::exp(-rate * x * x));
-                    for (k, factor) in factors.iter().enumerate() {
+                    for (k, factor) in factors.iter().enumerate().take(3) {
                         values.g[k][lane] = *factor * exponential;
                     }
                 }
@@ -88,7 +92,7 @@ impl<T: Float> Evaluator<T> {
                 continue;
             }
             let s = x.map(|x| piece.to - x);
-            for (k, (coefficients, inverse_power)) in piece.functions.iter().enumerate() {
+            for (k, (coefficients, inverse_power)) in piece.functions.iter().enumerate().take(3) {
                 let mut sum = [T::zero(); LANES];
                 for coefficient in coefficients {
                     for lane in 0..LANES {
@@ -106,6 +110,33 @@ impl<T: Float> Evaluator<T> {
                     }
                 }
             }
+        }
+        values
+    }
+
+    /// G_0 … G_4 at one x, those up to G_order; as [`Evaluator::evaluate`] at the origin and beyond the support.
+    pub fn radial(&self, x: T) -> [T; 5] {
+        let mut values = [T::zero(); 5];
+        match &self.shape {
+            Shape::Pieces(pieces) => {
+                let Some(piece) = pieces.iter().find(|piece| x >= piece.from && x < piece.to) else {
+                    return values;
+                };
+                let s = piece.to - x;
+                let inverse = if x > T::zero() { T::one() / x } else { T::zero() };
+                for (value, (coefficients, inverse_power)) in values.iter_mut().zip(&piece.functions) {
+                    let sum = coefficients.iter().fold(T::zero(), |sum, c| sum * s + *c);
+                    *value = (0..*inverse_power).fold(sum, |sum, _| sum * inverse);
+                }
+            }
+            Shape::Gaussian { rate, factors } if x < T::one() => {
+                let x = x.to_f64().unwrap_or(f64::NAN);
+                let exponential: T = cast(libm::exp(-rate * x * x));
+                for (value, factor) in values.iter_mut().zip(factors) {
+                    *value = *factor * exponential;
+                }
+            }
+            Shape::Gaussian { .. } => {}
         }
         values
     }

@@ -6,6 +6,7 @@
 mod coefficient;
 mod double_double;
 mod error;
+mod error_sample;
 pub mod fit;
 mod program;
 mod regular;
@@ -15,6 +16,7 @@ mod tensor;
 pub mod window;
 
 pub use error::{FitError, Input};
+pub use error_sample::{SampledError, sampled_error};
 pub use program::{Fields, Program, ProgramError};
 pub use regular::{RegularError, RegularNorm, RegularRung, RegularSpec, regular_rung};
 pub use sample::{

@@ -213,6 +213,18 @@ impl Sampler {
         Ok(block)
     }
 
+    /// The components of every subject in one sample, in units of R, limits and targets not taken off; `None` if two
+    /// particles coincide.
+    ///
+    /// # Errors
+    /// As [`Sampler::block`].
+    pub fn values(&self, sample: u64) -> Result<Option<Vec<f64>>, SampleError> {
+        Ok(match self.evaluate(&self.displaced(sample), sample)? {
+            Neighbourhood::Sums(components, _) => Some(components),
+            Neighbourhood::Degenerate => None,
+        })
+    }
+
     fn displaced(&self, sample: u64) -> Vec<[f64; 3]> {
         let mut stream = SampleStream::new(self.spec.seed, sample);
         self.sites

@@ -12,7 +12,7 @@ mod symmetry;
 mod volume;
 
 pub use cloud::{ClosestPair, Cloud, CloudError, LENGTH_LIMIT, PERIODS_LIMIT, Quantity, Support};
-pub use disorder::{Disorder, DisorderModel, Draw, Motion, Moves, Reach};
+pub use disorder::{Disorder, DisorderModel, Draw, Law, Motion, Moves, Reach, Shape};
 pub use error::ParticleError;
 pub use lattice::{Lattice, Site, SiteIndex, lattice_among, lattice_by_id};
 pub use neighbours::{Neighbour, Neighbours};

@@ -6,6 +6,7 @@ mod layout;
 mod markdown;
 mod printed;
 mod record;
+mod rms;
 mod table;
 mod write;
 
@@ -17,5 +18,6 @@ pub use layout::to_json;
 pub use markdown::markdown;
 pub use printed::{PrintedError, PrintedVerdict, printed_markdown, printed_verdicts};
 pub use record::*;
+pub use rms::{RmsReport, SampledReport};
 pub use table::{Row, Section, sections};
 pub use write::{WriteError, check_target, write_report};

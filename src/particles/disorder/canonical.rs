@@ -6,7 +6,7 @@
 //! n = (sin φ cos θ, sin φ sin θ, cos φ), ⟨n_z²⟩ = 1/2 and ⟨n_x²⟩ = ⟨n_y²⟩ = 1/4 in place of 1/3, so the axis matters; the
 //! paper does not say which it is. In 1-D and 2-D both readings are the same.
 
-use super::{DisorderModel, Motion, Moves, Options, Reach, direction};
+use super::{DisorderModel, Law, Motion, Moves, Options, Reach, Shape, direction};
 
 pub(super) fn model() -> DisorderModel {
     DisorderModel {
@@ -34,8 +34,10 @@ fn motion(options: &Options) -> Result<Motion, String> {
         reach: Reach::Ball(1.0),
         longest: [1.0; 3],
         least_dimension: 1,
+        law: Law::Independent(Shape::Sphere),
     };
     if printed {
+        motion.law = Law::Independent(Shape::Angles { axis });
         motion.unit = Box::new(move |draw| {
             let [a, b, ..] = draw.own_words();
             direction::by_angles(draw.dimension, [a, b], axis)

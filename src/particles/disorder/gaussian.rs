@@ -6,7 +6,7 @@
 //! probability 2·10⁻⁹: on the square lattice σ ≥ 1/12.
 
 use super::draw::unit_interval;
-use super::{DisorderModel, Motion, Moves, Reach};
+use super::{DisorderModel, Law, Motion, Moves, Reach, Shape};
 
 /// √(106 ln 2), rounded up.
 const LARGEST: f64 = 8.571_7;
@@ -33,6 +33,7 @@ pub(super) fn model() -> DisorderModel {
                 // In 3-D the first two components share their bound, the third has its own.
                 longest: [LARGEST, LARGEST, LARGEST * std::f64::consts::SQRT_2],
                 least_dimension: 1,
+                law: Law::Independent(Shape::Normal),
             })
         },
     }

@@ -8,6 +8,7 @@ mod canonical;
 mod direction;
 mod draw;
 mod gaussian;
+mod law;
 mod offset;
 mod options;
 mod random_box;
@@ -15,6 +16,7 @@ mod shear;
 mod wave;
 
 pub use draw::{Draw, SiteWords};
+pub use law::{Law, Shape};
 pub use options::Options;
 
 use super::ParticleError;
@@ -65,6 +67,8 @@ pub struct Motion {
     pub longest: [f64; 3],
     /// The smallest dimension in which it has a meaning.
     pub least_dimension: usize,
+    /// What u is distributed like, for those who take expectations.
+    pub law: Law,
 }
 
 /// How far u of two particles brings them together: whether neighbours can meet.
@@ -96,6 +100,7 @@ pub fn catalogue() -> Vec<DisorderModel> {
                     reach: Reach::Never,
                     longest: [0.0; 3],
                     least_dimension: 1,
+                    law: Law::Independent(Shape::Sphere),
                 })
             },
         },

@@ -3,7 +3,7 @@
 //! Seen from i, the whole lattice is displaced rigidly: the reading under which Fatehi & Manzari 2011 take d̃ out of the
 //! sum in Eq. (38).
 
-use super::{DisorderModel, Motion, Moves, Reach, direction};
+use super::{DisorderModel, Law, Motion, Moves, Reach, Shape, direction};
 
 pub(super) fn model() -> DisorderModel {
     DisorderModel {
@@ -21,6 +21,7 @@ pub(super) fn model() -> DisorderModel {
                 reach: Reach::Ball(1.0),
                 longest: [1.0; 3],
                 least_dimension: 1,
+                law: Law::Independent(Shape::Sphere),
             })
         },
     }

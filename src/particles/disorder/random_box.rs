@@ -1,7 +1,7 @@
 //! `box:ε`: x_i = x_i^reg + ε κ Δ per axis with κ uniform in [−1/4, 1/4] (Fatehi & Manzari 2011, §6.2).
 
 use super::draw::unit_interval;
-use super::{DisorderModel, Motion, Moves, Reach};
+use super::{DisorderModel, Law, Motion, Moves, Reach, Shape};
 
 pub(super) fn model() -> DisorderModel {
     DisorderModel {
@@ -21,6 +21,7 @@ pub(super) fn model() -> DisorderModel {
                 reach: Reach::PerAxis(0.25),
                 longest: [0.25, 0.25 * std::f64::consts::SQRT_2, 0.433_012_701_892_219_4],
                 least_dimension: 1,
+                law: Law::Independent(Shape::Box { half: 0.25 }),
             })
         },
     }

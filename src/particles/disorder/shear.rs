@@ -13,7 +13,7 @@
 //! `wave` and a `gaussian` come close.
 
 use super::draw::unit_interval;
-use super::{DisorderModel, Motion, Moves, Options, Reach};
+use super::{DisorderModel, Law, Motion, Moves, Options, Reach};
 
 pub(super) fn model() -> DisorderModel {
     DisorderModel {
@@ -34,12 +34,14 @@ fn motion(options: &Options) -> Result<Motion, String> {
             reach: Reach::Never,
             longest: [0.5; 3],
             least_dimension: 2,
+            law: Law::Rows,
         },
         _ => Motion {
             unit: Box::new(|draw| [if draw.row().rem_euclid(2) == 1 { 1.0 } else { 0.0 }, 0.0, 0.0]),
             reach: Reach::Never,
             longest: [1.0; 3],
             least_dimension: 2,
+            law: Law::AlternateRows,
         },
     })
 }

@@ -9,7 +9,7 @@
 //! Neighbours count as free to meet once 2A is their distance, whatever λ is.
 
 use super::draw::unit_interval;
-use super::{DisorderModel, Draw, Motion, Moves, Options, Reach, direction};
+use super::{DisorderModel, Draw, Law, Motion, Moves, Options, Reach, direction};
 use std::f64::consts::TAU;
 
 pub(super) fn model() -> DisorderModel {
@@ -59,5 +59,19 @@ fn motion(options: &Options) -> Result<Motion, String> {
         e.map(|e| e * sine)
     };
     // Rounding may leave |e| an ulp above 1.
-    Ok(Motion { unit: Box::new(unit), reach: Reach::Ball(1.0), longest: [1.0 + 1e-12; 3], least_dimension })
+    Ok(Motion {
+        unit: Box::new(unit),
+        reach: Reach::Ball(1.0),
+        longest: [1.0 + 1e-12; 3],
+        least_dimension,
+        law: Law::Wave {
+            wavelength: length,
+            in_h,
+            along: match direction {
+                Direction::Axis(axis) => Some(axis),
+                Direction::Random => None,
+            },
+            transverse,
+        },
+    })
 }
