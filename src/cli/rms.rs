@@ -4,7 +4,7 @@ use super::arguments::{RmsArguments, RmsModel};
 use super::execute::print_out;
 use super::exit::{Exit, Failure};
 use super::kernel::named;
-use crate::derived::{Setting, linearised};
+use crate::derived::{DeriveError, Setting, finite, linearised};
 use crate::exact::{parse_rational, rational_to_f64};
 use crate::language::{Coefficient, Subject};
 use crate::measured::{SampleSpec, sampled_error};
@@ -42,7 +42,9 @@ pub(super) fn rms(arguments: &RmsArguments) -> Result<Exit, Failure> {
             Subject::Coefficient(coefficient)
         }
         (None, None) => {
-            return Err(Failure::Arguments("name an operator (--operator F4) or a moment (--moment sum_dw)".into()));
+            return Err(Failure::Arguments(
+                "name an operator (--operator F4) or a moment (--moment sum_dw)".into(),
+            ));
         }
     };
     let nested = subject.coefficient().is_some_and(Coefficient::is_nested);
@@ -53,9 +55,11 @@ pub(super) fn rms(arguments: &RmsArguments) -> Result<Exit, Failure> {
         )));
     }
     let setting = Setting { kernel: &kernel, lattice: &lattice, disorder: &disorder, support_over_dx, rule };
-    let error = match arguments.model {
-        Some(RmsModel::Linearised) | None => linearised(&setting, &subject),
-        Some(RmsModel::Finite) => linearised(&setting, &subject),
+    let error = match (arguments.model, subject.moment()) {
+        (None, Some(moment)) if rule == VolumeRule::Constant => finite(&setting, moment),
+        (Some(RmsModel::Finite), Some(moment)) => finite(&setting, moment),
+        (Some(RmsModel::Finite), None) => Err(DeriveError::Finite { what: "operators" }),
+        _ => linearised(&setting, &subject),
     };
     let error = error.map_err(|error| fault(&error))?;
     let sampled = arguments.sample.map(|samples| {

@@ -3,11 +3,45 @@
 
 use super::jet::{Jet, LANES};
 use super::modes::Mode;
-use crate::exact::rational_to_f64;
+use crate::exact::{Number, rational_to_f64};
 use crate::kernel::{Evaluator, Kernel};
 use crate::language::ground::{Ground, MissingQuantity};
 use crate::language::tree::OfParticle;
 use crate::particles::{Lattice, Site, VolumeRule};
+
+/// Numbers that functions of one variable are known for: floating-point numbers, and jets of them.
+pub(super) trait Analytic: Number {
+    /// A number that does not change.
+    fn constant(value: f64) -> Self;
+    /// The value, derivatives left out.
+    fn value(&self) -> f64;
+    /// f of it, for f with these value and first two derivatives at its value.
+    fn through(&self, f: [f64; 3]) -> Self;
+}
+
+impl Analytic for f64 {
+    fn constant(value: f64) -> Self {
+        value
+    }
+    fn value(&self) -> f64 {
+        *self
+    }
+    fn through(&self, f: [f64; 3]) -> Self {
+        f[0]
+    }
+}
+
+impl Analytic for Jet {
+    fn constant(value: f64) -> Self {
+        Jet::constant(value)
+    }
+    fn value(&self) -> f64 {
+        self.value
+    }
+    fn through(&self, f: [f64; 3]) -> Self {
+        Jet::through(self, f)
+    }
+}
 
 /// A neighbourhood of particle i on a lattice.
 pub(super) struct Neighbourhood<'a> {
@@ -77,9 +111,9 @@ impl<'a> Neighbourhood<'a> {
     }
 
     /// G_0, G_1, G_2 at r² = `square`, in units of Δ.
-    fn radial(&self, square: &Jet) -> [Jet; 3] {
+    fn radial<T: Analytic>(&self, square: &T) -> [T; 3] {
         let r = self.support;
-        let g = self.evaluator.radial(square.value.sqrt() / r);
+        let g = self.evaluator.radial(square.value().sqrt() / r);
         let mut scale = (0..self.lattice.dimension()).fold(1.0, |scale, _| scale / r);
         let g = g.map(|g| {
             let scaled = g * scale;
@@ -92,14 +126,14 @@ impl<'a> Neighbourhood<'a> {
 }
 
 /// A neighbourhood with its particles displaced.
-pub(super) struct Displaced<'a> {
+pub(super) struct Displaced<'a, T> {
     around: &'a Neighbourhood<'a>,
-    places: Vec<[Jet; 3]>,
+    places: Vec<[T; 3]>,
     /// Of the particles that sums run over.
-    volumes: Vec<Jet>,
+    volumes: Vec<T>,
 }
 
-impl<'a> Displaced<'a> {
+impl<'a> Displaced<'a, Jet> {
     /// At the lattice sites, to be differentiated along these directions, at most [`LANES`] of them.
     pub(super) fn along(around: &'a Neighbourhood<'a>, modes: &[Mode]) -> Self {
         let mut places: Vec<[Jet; 3]> =
@@ -113,12 +147,32 @@ impl<'a> Displaced<'a> {
                 }
             }
         }
+        Self::at(around, places, &moves)
+    }
+}
+
+impl<'a> Displaced<'a, f64> {
+    /// With the particles moved by `sign` times a pattern.
+    pub(super) fn by(around: &'a Neighbourhood<'a>, mode: &Mode, sign: f64) -> Self {
+        let mut places: Vec<[f64; 3]> = around.sites.iter().map(|site| site.position).collect();
+        for (site, d) in mode {
+            for (x, d) in places[*site].iter_mut().zip(d) {
+                *x += sign * d;
+            }
+        }
+        let moves = vec![true; places.len()];
+        Self::at(around, places, &moves)
+    }
+}
+
+impl<'a, T: Analytic> Displaced<'a, T> {
+    fn at(around: &'a Neighbourhood<'a>, places: Vec<[T; 3]>, moves: &[bool]) -> Self {
         let mut ground = Self { around, places, volumes: Vec::new() };
         let volume = |p: usize| match around.rule {
             VolumeRule::NumberDensity if !around.near[p].is_empty() => {
                 // Most pairs stand still along the few directions of a block.
                 let mut still = 0.0;
-                let mut sum = Jet::constant(0.0);
+                let mut sum = T::nought();
                 for q in &around.near[p] {
                     if moves[p] || moves[*q] {
                         let [w, ..] = around.radial(&square(&ground.separation(p, *q)));
@@ -127,21 +181,25 @@ impl<'a> Displaced<'a> {
                         still += around.kernel(p, *q);
                     }
                 }
-                sum.value += still;
-                Jet::constant(1.0) / sum
+                T::constant(1.0) / (sum + T::constant(still))
             }
-            _ => Jet::constant(around.volume),
+            _ => T::constant(around.volume),
         };
         ground.volumes = (0..around.sites.len()).map(volume).collect();
         ground
     }
 
-    fn separation(&self, p: usize, q: usize) -> [Jet; 3] {
+    /// Particle i.
+    pub(super) fn centre(&self) -> usize {
+        self.around.centre
+    }
+
+    fn separation(&self, p: usize, q: usize) -> [T; 3] {
         std::array::from_fn(|a| self.places[p][a].clone() - self.places[q][a].clone())
     }
 
     /// The neighbours of particle i with r_ij, V_j and G_0, G_1, G_2.
-    pub(super) fn pairs(&self) -> impl Iterator<Item = ([Jet; 3], Jet, [Jet; 3])> {
+    pub(super) fn pairs(&self) -> impl Iterator<Item = ([T; 3], T, [T; 3])> {
         self.around.near[self.around.centre].iter().map(|q| {
             let r = self.separation(self.around.centre, *q);
             let g = self.around.radial(&square(&r));
@@ -150,32 +208,32 @@ impl<'a> Displaced<'a> {
     }
 }
 
-impl Ground<Jet> for Displaced<'_> {
+impl<T: Analytic> Ground<T> for Displaced<'_, T> {
     fn dimension(&self) -> usize {
         self.around.lattice.dimension()
     }
 
-    fn neighbours(&self, p: usize) -> Vec<(usize, [Jet; 3])> {
+    fn neighbours(&self, p: usize) -> Vec<(usize, [T; 3])> {
         self.around.near[p].iter().map(|q| (*q, self.separation(p, *q))).collect()
     }
 
-    fn of_particle(&self, quantity: OfParticle, p: usize) -> Result<Jet, MissingQuantity> {
+    fn of_particle(&self, quantity: OfParticle, p: usize) -> Result<T, MissingQuantity> {
         // One fluid of unit density and viscosity.
         Ok(match quantity {
             OfParticle::Volume | OfParticle::Mass => self.volumes[p].clone(),
-            OfParticle::Density | OfParticle::Viscosity => Jet::constant(1.0),
+            OfParticle::Density | OfParticle::Viscosity => T::constant(1.0),
         })
     }
 
-    fn smoothing_length(&self) -> Jet {
-        Jet::constant(self.around.h)
+    fn smoothing_length(&self) -> T {
+        T::constant(self.around.h)
     }
 
-    fn kernel(&self, _p: usize, _q: usize, r: &[Jet; 3]) -> [Jet; 3] {
+    fn kernel(&self, _p: usize, _q: usize, r: &[T; 3]) -> [T; 3] {
         self.around.radial(&square(r))
     }
 }
 
-fn square(r: &[Jet; 3]) -> Jet {
-    r.iter().fold(Jet::constant(0.0), |sum, x| sum + x.clone() * x.clone())
+fn square<T: Analytic>(r: &[T; 3]) -> T {
+    r.iter().fold(T::constant(0.0), |sum, x| sum + x.clone() * x.clone())
 }

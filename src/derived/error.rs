@@ -45,6 +45,14 @@ pub enum DeriveError {
         /// Why.
         what: &'static str,
     },
+    /// An expectation over the whole law of the displacements is not to be had.
+    #[error(
+        "the finite model takes moment sums with constant volumes, not {what}: ask for the linearised one"
+    )]
+    Finite {
+        /// What was asked.
+        what: &'static str,
+    },
     /// The particles lack a quantity.
     #[error(transparent)]
     Missing(#[from] MissingQuantity),

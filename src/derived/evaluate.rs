@@ -5,6 +5,7 @@ use super::algebra::{Bound, Expression, Factor, Index, Label, Symbol, Term};
 use crate::exact::{Number, Solution, int, inverse, solve};
 use crate::language::ground::Ground;
 use crate::language::tree::OfParticle;
+use num_traits::One as _;
 use std::collections::BTreeMap;
 
 /// A tensor with named indices, the first the slowest.
@@ -76,7 +77,11 @@ impl<'a, T: Number> Evaluation<'a, T> {
     fn term(&mut self, term: &Term, places: &Places<T>) -> Result<Named<T>, DeriveError> {
         let factors: Vec<&Factor> = term.factors.iter().collect();
         let product = self.product(&factors, &term.bounds, places)?;
-        Ok(product.scaled(&T::from_rational(&term.coefficient)))
+        Ok(if term.coefficient.is_one() {
+            product
+        } else {
+            product.scaled(&T::from_rational(&term.coefficient))
+        })
     }
 
     /// The product of factors, summed over the bound particles.
@@ -392,7 +397,10 @@ impl<T: Number> Named<T> {
             self.indices.iter().copied().filter(|index| other.indices.contains(index)).collect();
         let kept = self.indices.iter().chain(&other.indices).copied().filter(|index| !shared.contains(index));
         let kept: Vec<Index> = kept.collect();
-        let (outer, inner) = ([self.steps(&kept, d), other.steps(&kept, d)], [self.steps(&shared, d), other.steps(&shared, d)]);
+        let (outer, inner) = (
+            [self.steps(&kept, d), other.steps(&kept, d)],
+            [self.steps(&shared, d), other.steps(&shared, d)],
+        );
         let sums = d.pow(shared.len() as u32);
         let values = (0..d.pow(kept.len() as u32)).map(|at| {
             let [mine, theirs] = [place(at, &outer[0], d), place(at, &outer[1], d)];

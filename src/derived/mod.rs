@@ -5,6 +5,8 @@
 //! - `build`: from an operator's tree to its expression, the Taylor series in place of the field.
 //! - `expansion`: order by order, what multiplies ∇^m u, and what is left when the target is taken off.
 //! - `arrangement`: particles with rational places, on which what is left is shown not to vanish.
+//! - `jet`, `modes`, `displaced`, `rms`: the error on displaced particles, differentiated with respect to each of them.
+//! - `quadrature`, `expectation`, `finite`: moment sums averaged over the whole law of the displacements.
 //! - `conserve`: which sums are conserved, whatever the field.
 
 mod algebra;
@@ -16,6 +18,8 @@ mod displaced;
 mod error;
 mod evaluate;
 mod expansion;
+mod expectation;
+mod finite;
 mod jet;
 mod modes;
 mod normal;
@@ -28,5 +32,6 @@ pub use arrangement::Arrangement;
 pub use conserve::{Conservation, Conserved};
 pub use error::DeriveError;
 pub use expansion::{Expansion, MOST_ORDER, OrderTerms, VanishingTerm};
+pub use finite::finite;
 pub use rms::{ComponentError, Model, RmsError, Setting, linearised};
 pub use write::{Format, Printed};

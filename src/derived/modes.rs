@@ -2,6 +2,8 @@
 //! the covariance of the displacements is Σ_v v v^T. First and second moments are all that a linearised error needs.
 
 use super::DeriveError;
+use super::expectation::across;
+use super::quadrature::gauss_legendre;
 use crate::particles::{Disorder, Lattice, Law, Moves, Site};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -55,7 +57,11 @@ impl Modes {
                     None => evenly(dimension, 2.0 * farthest / wavelength),
                 };
                 for (n, weight) in directions {
-                    let polarisations = if transverse { across(dimension, n) } else { vec![n] };
+                    let polarisations = match (transverse, dimension) {
+                        (false, _) => vec![n],
+                        (true, 2) => vec![[-n[1], n[0], 0.0]],
+                        (true, _) => across(n).to_vec(),
+                    };
                     // ⟨sin²⟩ = ⟨cos²⟩ = 1/2, and the two are uncorrelated.
                     let scale = amplitude * (0.5 * weight / polarisations.len() as f64).sqrt();
                     for e in polarisations {
@@ -80,9 +86,11 @@ impl Modes {
                 modes.random = rows.into_values().collect();
             }
             Law::AlternateRows => {
-                let moves = |site: &&(usize, &Site)| lattice.row(site.1.cell, site.1.basis).rem_euclid(2) == 1;
+                let moves =
+                    |site: &&(usize, &Site)| lattice.row(site.1.cell, site.1.basis).rem_euclid(2) == 1;
                 let rows: Vec<(usize, &Site)> = sites.iter().enumerate().collect();
-                modes.mean = rows.iter().filter(moves).map(|(place, _)| (*place, unit(0, amplitude))).collect();
+                modes.mean =
+                    rows.iter().filter(moves).map(|(place, _)| (*place, unit(0, amplitude))).collect();
             }
         }
         Ok(modes)
@@ -144,31 +152,15 @@ fn evenly(dimension: usize, waves: f64) -> Vec<([f64; 3], f64)> {
             (0..count).map(direction).collect()
         }
         _ => {
-            let (nodes, weights) = super::quadrature::gauss_legendre(count);
             let mut directions = Vec::new();
-            for (z, weight) in nodes.iter().zip(weights) {
+            for (z, weight) in gauss_legendre(count).iter() {
                 for n in 0..count {
                     let (sine, cosine) = libm::sincos(0.5 * TAU * n as f64 / count as f64);
                     let rho = (1.0 - z * z).sqrt();
-                    directions.push(([rho * cosine, rho * sine, *z], 0.5 * weight / count as f64));
+                    directions.push(([rho * cosine, rho * sine, z], 0.5 * weight / count as f64));
                 }
             }
             directions
         }
     }
-}
-
-/// Unit vectors across n and each other.
-fn across(dimension: usize, n: [f64; 3]) -> Vec<[f64; 3]> {
-    if dimension == 2 {
-        return vec![[-n[1], n[0], 0.0]];
-    }
-    let least = (1..3).fold(0, |least, a| if n[a].abs() < n[least].abs() { a } else { least });
-    let axis: [f64; 3] = std::array::from_fn(|a| if a == least { 1.0 } else { 0.0 });
-    let cross = |a: [f64; 3], b: [f64; 3]| {
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    };
-    let first = cross(n, axis);
-    let first = first.map(|x| x / length(first));
-    vec![first, cross(n, first)]
 }

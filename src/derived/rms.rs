@@ -4,15 +4,15 @@
 //! e = e₀ + J·d + ½ d·H·d: ⟨e⟩ = e₀ + ½ tr(H C), Var e = J C J^T, ⟨e²⟩ = e₀² + e₀ tr(H C) + J C J^T. J and H are
 //! the exact derivatives with respect to the place of every particle that enters, volumes and B_i among what depends on it.
 
-use super::displaced::{Displaced, Neighbourhood};
+use super::DeriveError;
+use super::displaced::{Analytic, Displaced, Neighbourhood};
 use super::expansion::Expansion;
 use super::jet::{Jet, LANES};
 use super::modes::{Mode, Modes};
-use super::DeriveError;
 use crate::kernel::Kernel;
 use crate::language::Subject;
 use crate::particles::{Disorder, Lattice, VolumeRule};
-use crate::sums::Component;
+use crate::sums::{Component, Moment};
 
 /// Where an RMS error is asked for.
 #[derive(Debug, Clone)]
@@ -55,6 +55,12 @@ pub struct ComponentError {
     pub variance: f64,
     /// ⟨e²⟩.
     pub mean_square: f64,
+}
+
+impl ComponentError {
+    fn with_limit(name: String, multiplicity: u64, limit: f64) -> Self {
+        Self { name, multiplicity, limit, regular: 0.0, mean: 0.0, variance: 0.0, mean_square: 0.0 }
+    }
 }
 
 /// An RMS error, in units of Δ.
@@ -106,8 +112,8 @@ enum Differentiated {
     Operator { expansion: Box<Expansion>, order: usize },
 }
 
-/// How many signed sums of modes estimate what the linearised model leaves out.
-const DESIGNS: usize = 2 * LANES;
+/// How many signed sums of modes estimate what the linearised model leaves out; at most [`LANES`].
+const DESIGNS: usize = 8;
 
 /// The linearised RMS error. Of a coefficient C_m the error on the field x^m/m! about particle i is meant; operators on a
 /// vector take (x^m/m!, 0, 0).
@@ -125,7 +131,7 @@ pub fn linearised(setting: &Setting<'_>, subject: &Subject) -> Result<RmsError, 
     let still = Modes { mean: Mode::new(), random: vec![Mode::new()] };
     let random = if modes.random.is_empty() { &still.random } else { &modes.random };
     for block in random.chunks(LANES) {
-        let errors = evaluated(&what, &around, block)?;
+        let errors = evaluated(&what, &Displaced::along(&around, block))?;
         for ((component, jet), trace) in components.iter_mut().zip(&errors).zip(&mut trace) {
             component.regular = jet.value - component.limit;
             for lane in 0..block.len() {
@@ -134,7 +140,7 @@ pub fn linearised(setting: &Setting<'_>, subject: &Subject) -> Result<RmsError, 
             }
         }
     }
-    let along_mean = evaluated(&what, &around, std::slice::from_ref(&modes.mean))?;
+    let along_mean = evaluated(&what, &Displaced::along(&around, std::slice::from_ref(&modes.mean)))?;
     for ((component, trace), shift) in components.iter_mut().zip(&trace).zip(&along_mean) {
         let second = shift.first[0] + 0.5 * (shift.second[0] + trace);
         component.mean = component.regular + second;
@@ -152,24 +158,35 @@ pub fn linearised(setting: &Setting<'_>, subject: &Subject) -> Result<RmsError, 
     Ok(error)
 }
 
-/// √(rms² + q) − rms with q = ½ ⟨(d·H·d)²⟩: of the three terms of fourth order in d, ¼⟨(dHd)²⟩, ⅓⟨(Jd)(Tddd)⟩ and
-/// e₀⟨Qdddd⟩/12, the first stands for all, doubled.
+/// How far ⟨e²⟩ is off, on a few displacements ±v of signed sums of all modes: |e(±v)|² less its expansion to second order
+/// and what of it the linearised mean square leaves out.
 fn left_out(
     what: &Differentiated,
     around: &Neighbourhood<'_>,
     modes: &Modes,
     error: &RmsError,
 ) -> Result<f64, DeriveError> {
-    let mut sum = 0.0;
-    for block in modes.signed_sums(DESIGNS).chunks(LANES) {
-        let jets = evaluated(what, around, block)?;
-        for (jet, component) in jets.iter().zip(&error.components) {
-            let squares = jet.second.iter().take(block.len()).map(|second| second * second);
-            sum += component.multiplicity as f64 * squares.sum::<f64>();
+    let designs = modes.signed_sums(DESIGNS);
+    let jets: Vec<Jet> = evaluated(what, &Displaced::along(around, &designs))?;
+    let mut off = 0.0;
+    for (lane, design) in designs.iter().enumerate() {
+        let there: Vec<f64> = evaluated(what, &Displaced::by(around, design, 1.0))?;
+        // A mean displacement has one sign only.
+        let opposite = modes.mean.is_empty();
+        let back =
+            if opposite { evaluated(what, &Displaced::by(around, design, -1.0))? } else { there.clone() };
+        let mut square = 0.0;
+        for (((component, jet), there), back) in error.components.iter().zip(&jets).zip(there).zip(back) {
+            let exact =
+                [there, back].map(|value| (value - component.limit).powi(2)).iter().sum::<f64>() / 2.0;
+            let (e, first, second) = (component.regular, jet.first[lane], jet.second[lane]);
+            let odd = if opposite { 0.0 } else { 2.0 * e * first };
+            square += component.multiplicity as f64 * (exact - (e * e + odd + e * second + first * first));
         }
+        off += square.abs() / DESIGNS as f64;
     }
     let rms = error.rms();
-    Ok((rms * rms + 0.5 * sum / DESIGNS as f64).sqrt() - rms)
+    Ok((rms * rms + off).sqrt() - rms)
 }
 
 /// The components with their limits, and what gives their values.
@@ -179,25 +196,10 @@ fn prepared(
     dimension: usize,
     h: f64,
 ) -> Result<(Differentiated, Vec<ComponentError>), DeriveError> {
-    let entry = |name: String, multiplicity: u64, limit: f64| ComponentError {
-        name,
-        multiplicity,
-        limit,
-        regular: 0.0,
-        mean: 0.0,
-        variance: 0.0,
-        mean_square: 0.0,
-    };
     match subject {
         Subject::Moment(moment) => {
-            let all = moment.components(dimension);
-            let unit = (0..moment.length_power().abs()).fold(1.0, |unit, _| unit * h);
-            let unit = if moment.length_power() < 0 { 1.0 / unit } else { unit };
-            let limit = |component: &Component| {
-                unit * kernel.continuum_limit(dimension, &component.terms, 96).enclose(96).midpoint_f64()
-            };
-            let entries = all.iter().map(|c| entry(c.name.clone(), c.multiplicity, limit(c))).collect();
-            Ok((Differentiated::Moment(all), entries))
+            let entries = moment_components(*moment, kernel, dimension, h);
+            Ok((Differentiated::Moment(moment.components(dimension)), entries))
         }
         Subject::Coefficient(coefficient) => {
             let order = usize::from(coefficient.order());
@@ -205,22 +207,33 @@ fn prepared(
             let expansion = Expansion::of(coefficient.operator().clone(), target, order)?;
             let rank = usize::from(coefficient.operator().rank());
             // The expansion has the target taken off already.
-            let entries = words(dimension, rank).into_iter().map(|name| entry(name, 1, 0.0)).collect();
-            Ok((Differentiated::Operator { expansion: Box::new(expansion), order }, entries))
+            let entries =
+                words(dimension, rank).into_iter().map(|name| ComponentError::with_limit(name, 1, 0.0));
+            Ok((Differentiated::Operator { expansion: Box::new(expansion), order }, entries.collect()))
         }
     }
 }
 
-/// The components differentiated along a block of modes.
-fn evaluated(
-    what: &Differentiated,
-    around: &Neighbourhood<'_>,
-    block: &[Mode],
-) -> Result<Vec<Jet>, DeriveError> {
-    let ground = Displaced::along(around, block);
+/// The components of a moment with their continuum limits, in units of Δ.
+pub(super) fn moment_components(
+    moment: Moment,
+    kernel: &Kernel,
+    dimension: usize,
+    h: f64,
+) -> Vec<ComponentError> {
+    let unit = h.powi(moment.length_power());
+    let entry = |component: Component| {
+        let limit = kernel.continuum_limit(dimension, &component.terms, 96).enclose(96).midpoint_f64();
+        ComponentError::with_limit(component.name, component.multiplicity, unit * limit)
+    };
+    moment.components(dimension).into_iter().map(entry).collect()
+}
+
+/// The components on displaced particles.
+fn evaluated<T: Analytic>(what: &Differentiated, ground: &Displaced<'_, T>) -> Result<Vec<T>, DeriveError> {
     match what {
         Differentiated::Moment(components) => {
-            let mut sums = vec![Jet::constant(0.0); components.len()];
+            let mut sums = vec![T::nought(); components.len()];
             for (r, volume, g) in ground.pairs() {
                 for (sum, component) in sums.iter_mut().zip(components) {
                     for term in &component.terms {
@@ -230,7 +243,7 @@ fn evaluated(
                                 value = value * x.clone();
                             }
                         }
-                        *sum = sum.clone() + value * Jet::constant(term.coefficient as f64);
+                        *sum = sum.clone() + value * T::constant(term.coefficient as f64);
                     }
                 }
             }
@@ -238,7 +251,7 @@ fn evaluated(
         }
         Differentiated::Operator { expansion, order } => {
             // ∂_x^m u alone is not zero, and its multi-index is the first.
-            let values = expansion.error_at(&ground, around.centre, *order)?;
+            let values = expansion.error_at(ground, ground.centre(), *order)?;
             let first = values.into_iter().next().and_then(|components| components.into_iter().next());
             Ok(first.unwrap_or_default())
         }
@@ -248,7 +261,8 @@ fn evaluated(
 /// The components of a tensor by their letters, the first index slowest.
 fn words(dimension: usize, rank: usize) -> Vec<String> {
     (0..rank).fold(vec![String::new()], |words, _| {
-        let longer = |word: &String| ["x", "y", "z"][..dimension].iter().map(|l| format!("{word}{l}")).collect();
+        let longer =
+            |word: &String| ["x", "y", "z"][..dimension].iter().map(|l| format!("{word}{l}")).collect();
         words.iter().flat_map::<Vec<String>, _>(longer).collect()
     })
 }

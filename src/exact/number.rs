@@ -34,6 +34,9 @@ pub trait Number:
 
     /// x^n; `None` for a negative power of zero.
     fn power(&self, n: i32) -> Option<Self> {
+        if n == 1 {
+            return Some(self.clone());
+        }
         let one = Self::from_rational(&Rational::from_integer(BigInt::from(1)));
         let magnitude = (0..n.unsigned_abs()).fold(one.clone(), |product, _| product * self.clone());
         match n {

@@ -113,6 +113,10 @@ pub fn rational_text(value: &Rational) -> String {
 
 /// The `f64` nearest to `value` (within 1 ulp whatever the size of numerator and denominator; ±∞ on overflow).
 pub fn rational_to_f64(value: &Rational) -> f64 {
+    // Small whole numbers, which are most, need no division of big ones.
+    if let (true, Some(whole)) = (value.is_integer(), value.numer().to_i32()) {
+        return f64::from(whole);
+    }
     // `to_f64` answers `None` only for 0/0, which no `Rational` is.
     value.to_f64().unwrap_or(f64::NAN)
 }

@@ -30,20 +30,23 @@ pub use wendland::{wendland_c2, wendland_c2_1d, wendland_c4, wendland_c4_1d, wen
 
 use crate::names::nearest;
 
+/// By id, so that naming one does not construct them all.
+const ENTRIES: [(&str, fn() -> Kernel); 10] = [
+    ("wendland-c2", wendland_c2),
+    ("wendland-c4", wendland_c4),
+    ("wendland-c6", wendland_c6),
+    ("wendland-c2-1d", wendland_c2_1d),
+    ("wendland-c4-1d", wendland_c4_1d),
+    ("wendland-c6-1d", wendland_c6_1d),
+    ("cubic-spline", cubic_spline),
+    ("quartic-spline", quartic_spline),
+    ("quintic-spline", quintic_spline),
+    ("gaussian", gaussian),
+];
+
 /// The kernels that can be named in a scene or on the command line.
 pub fn catalogue() -> Vec<Kernel> {
-    vec![
-        wendland_c2(),
-        wendland_c4(),
-        wendland_c6(),
-        wendland_c2_1d(),
-        wendland_c4_1d(),
-        wendland_c6_1d(),
-        cubic_spline(),
-        quartic_spline(),
-        quintic_spline(),
-        gaussian(),
-    ]
+    ENTRIES.iter().map(|(_, construct)| construct()).collect()
 }
 
 /// The kernel of the catalogue with this id; `gaussian:cut=2.5` cuts the Gaussian at 2.5 h.
@@ -68,12 +71,24 @@ pub fn by_id_among(id: &str, own: &[Kernel]) -> Result<Kernel, KernelError> {
     if let Some(parameters) = id.strip_prefix("gaussian:") {
         return gaussian::with_parameters(parameters);
     }
-    let known: Vec<Kernel> = own.iter().cloned().chain(catalogue()).collect();
-    let ids: Vec<&str> = known.iter().map(Kernel::id).collect();
-    match ids.iter().position(|candidate| *candidate == id) {
-        Some(index) => Ok(known[index].clone()),
-        None => {
-            Err(KernelError::Unknown { id: id.to_owned(), nearest: nearest(id, &ids), known: ids.join(", ") })
+    if let Some(kernel) = own.iter().find(|kernel| kernel.id() == id) {
+        return Ok(kernel.clone());
+    }
+    if let Some((_, construct)) = ENTRIES.iter().find(|(known, _)| *known == id) {
+        return Ok(construct());
+    }
+    let ids: Vec<&str> = own.iter().map(Kernel::id).chain(ENTRIES.map(|(known, _)| known)).collect();
+    Err(KernelError::Unknown { id: id.to_owned(), nearest: nearest(id, &ids), known: ids.join(", ") })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_entry_constructs_the_kernel_that_it_names() {
+        for (id, construct) in ENTRIES {
+            assert_eq!(construct().id(), id);
         }
     }
 }

@@ -29,7 +29,13 @@ pub struct SampledError {
 /// As [`Sampler::new`] and [`Sampler::block`].
 pub fn sampled_error(spec: &SampleSpec, samples: u64) -> Result<SampledError, SampleError> {
     let Some(subject) = spec.subjects.first() else {
-        return Ok(SampledError { samples: 0, degenerate: 0, rms: 0.0, rms_error: 0.0, components: Vec::new() });
+        return Ok(SampledError {
+            samples: 0,
+            degenerate: 0,
+            rms: 0.0,
+            rms_error: 0.0,
+            components: Vec::new(),
+        });
     };
     let dimension = spec.lattice.dimension();
     let sampler = Sampler::new(spec.clone())?;

@@ -47,11 +47,29 @@ impl PointGroup {
 
     /// Whether r → −r is among them.
     pub fn has_inversion(&self) -> bool {
-        let minus = |a: usize, b: usize| if a == b { int(-1) } else { int(0) };
+        self.turns(|_| true)
+    }
+
+    /// Whether x_axis → −x_axis is among them.
+    pub fn has_reflection(&self, axis: usize) -> bool {
+        self.turns(|a| a == axis)
+    }
+
+    /// Whether turning these axes, and nothing else, is among them.
+    fn turns(&self, turned: impl Fn(usize) -> bool) -> bool {
+        let image = |a: usize, b: usize| {
+            int(if a != b {
+                0
+            } else if turned(a) {
+                -1
+            } else {
+                1
+            })
+        };
         let axes = 0..self.dimension;
         self.operations
             .iter()
-            .any(|operation| axes.clone().all(|a| axes.clone().all(|b| operation[a][b] == minus(a, b))))
+            .any(|operation| axes.clone().all(|a| axes.clone().all(|b| operation[a][b] == image(a, b))))
     }
 
     /// The mean of k^monomial over the group.

@@ -80,7 +80,10 @@ fn entry(judged: &JudgedCase, margin: f64) -> ClaimEntry {
         Statement::Convergence { rate, .. } => {
             let power = int(1) - int(i64::from(claim.subject.length_power())) / rate.at(judged.case.beta);
             let power = Estimate::exact(rational_text(&power), Source::Print);
-            (ClaimKind::Constant, Column { value: Some(power), unit: Some(POWER.into()), ..Column::default() })
+            (
+                ClaimKind::Constant,
+                Column { value: Some(power), unit: Some(POWER.into()), ..Column::default() },
+            )
         }
     };
     let measured = match &judged.measured {
@@ -112,12 +115,8 @@ fn entry(judged: &JudgedCase, margin: f64) -> ClaimEntry {
         MeasuredColumn::Rate { rate, fits } => {
             let power = |rate| significant(convergence_power(rate, claim.subject.length_power()), DIGITS);
             let ends = [power(rate.low), power(rate.high)];
-            let value = Estimate::float(
-                power(rate.value),
-                ends[0].min(ends[1]),
-                ends[0].max(ends[1]),
-                Source::Fit,
-            );
+            let value =
+                Estimate::float(power(rate.value), ends[0].min(ends[1]), ends[0].max(ends[1]), Source::Fit);
             Some(Column {
                 value: Some(value),
                 unit: Some(POWER.into()),

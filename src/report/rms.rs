@@ -69,12 +69,14 @@ const DIGITS: usize = 8;
 impl RmsReport {
     /// From what was derived and, perhaps, sampled.
     pub fn new(subject: &Subject, error: &RmsError, sampled: Option<&SampledError>) -> Self {
-        let by = |value: fn(&crate::derived::ComponentError) -> f64| error.components.iter().map(value).collect();
+        let by =
+            |value: fn(&crate::derived::ComponentError) -> f64| error.components.iter().map(value).collect();
         let power = subject.length_power();
         let order = subject.coefficient().map(|coefficient| coefficient.order());
         Self {
             subject: subject.coefficient().map_or_else(|| subject.name(), |known| known.id().to_owned()),
-            field: order.map(|order| ["1", "x", "x²/2"].get(usize::from(order)).map_or("xᵐ/m!", |f| f).into()),
+            field: order
+                .map(|order| ["1", "x", "x²/2"].get(usize::from(order)).map_or("xᵐ/m!", |f| f).into()),
             unit: if power == 0 { "1".into() } else { format!("Δ^{power}") },
             rms: error.rms(),
             components: by(|component| component.mean_square.max(0.0).sqrt()),
@@ -118,10 +120,7 @@ impl RmsReport {
         line(format!("  disorder  {:<22.15e} standard deviation of e", self.disorder));
         line(format!("  mean      {:<22.15e}", self.mean));
         if self.model == "linearised" {
-            line(format!(
-                "  model     {:<22.2e} left out by the linearisation, estimated",
-                self.model_error
-            ));
+            line(format!("  model     {:<22.2e} left out by the linearisation, estimated", self.model_error));
         }
         if let Some(sampled) = &self.sampled {
             let (n, error) = (sampled.samples, sampled.standard_error);

@@ -114,7 +114,9 @@ fn row(entry: &ClaimEntry, shown: &[&str]) -> Row {
         {
             (Some(d), Some(x)) if number(&d.value) == "0" => number(&x.value),
             (Some(d), Some(x)) => format!("{}, {}", number(&d.value), number(&x.value)),
-            _ => power(&entry.published).map_or("0".into(), |power| format!("Δ ≪ h^{}", number(&power.value))),
+            _ => {
+                power(&entry.published).map_or("0".into(), |power| format!("Δ ≪ h^{}", number(&power.value)))
+            }
         };
     let zero = entry.measured.as_ref().and_then(|column| column.zero.as_ref());
     let dx_over_h = match (exponent(&entry.measured, |e| &e.dx_over_h), zero) {

@@ -6,8 +6,8 @@ use super::plan::{Plan, claims_in};
 use super::run::TaskResult;
 use super::scene::{CaseGroup, Scene};
 use crate::claim::{
-    CaseVerdict, Claim, Judgement, Measured, Quantity, Statement, Verdict, judge_convergence, judge_power_law,
-    roll_up,
+    CaseVerdict, Claim, Judgement, Measured, Quantity, Statement, Verdict, judge_convergence,
+    judge_power_law, roll_up,
 };
 use crate::exact::rational_to_f64;
 use crate::particles::{Disorder, PointGroup};
@@ -110,13 +110,17 @@ impl Bench<'_> {
                 };
                 (MeasuredColumn::NotZero(largest), judgement)
             }
-            Statement::PowerLaw { .. } | Statement::Convergence { .. } if !claim.is_disordered() && vanishes => (
-                MeasuredColumn::ZeroBySymmetry,
-                Judgement {
-                    verdict: Verdict::Bound,
-                    why: "the sum vanishes by symmetry, so every order holds as an upper bound.".into(),
-                },
-            ),
+            Statement::PowerLaw { .. } | Statement::Convergence { .. }
+                if !claim.is_disordered() && vanishes =>
+            {
+                (
+                    MeasuredColumn::ZeroBySymmetry,
+                    Judgement {
+                        verdict: Verdict::Bound,
+                        why: "the sum vanishes by symmetry, so every order holds as an upper bound.".into(),
+                    },
+                )
+            }
             Statement::PowerLaw { quantity, powers } => {
                 let published = [&powers.displacement, &powers.dx_over_h]
                     .map(|exponent| rational_to_f64(&exponent.at(case.beta)));

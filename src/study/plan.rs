@@ -313,12 +313,23 @@ pub(super) fn claims_in(scene: &Scene, dimension: usize) -> Vec<Claim> {
 
 /// What some claim needs on regular particles and symmetry does not settle.
 fn regular_subjects(claims: &[Claim], lattice: &Lattice, group: &PointGroup) -> Vec<Subject> {
-    let asked = claims.iter().filter(|claim| !claim.is_disordered()).map(|claim| claim.subject.clone()).sorted().dedup();
+    let asked = claims
+        .iter()
+        .filter(|claim| !claim.is_disordered())
+        .map(|claim| claim.subject.clone())
+        .sorted()
+        .dedup();
     asked.filter(|subject| !subject.vanishes(lattice, group)).collect()
 }
 
 fn disordered_subjects(claims: &[Claim]) -> Vec<Subject> {
-    claims.iter().filter(|claim| claim.is_disordered()).map(|claim| claim.subject.clone()).sorted().dedup().collect()
+    claims
+        .iter()
+        .filter(|claim| claim.is_disordered())
+        .map(|claim| claim.subject.clone())
+        .sorted()
+        .dedup()
+        .collect()
 }
 
 fn omissions(scene: &Scene, lattices: &[(&Lattice, PointGroup)]) -> Vec<Omission> {
