@@ -33,6 +33,8 @@ pub(super) enum Command {
     Expand(ExpandArguments),
     /// The RMS error of an operator or a moment sum on disordered particles, without a sample
     Rms(RmsArguments),
+    /// The Fourier symbol of an operator on a lattice: modified wavenumber, its error, null modes
+    Symbol(SymbolArguments),
     /// List what can be named in a scene
     List(ListArguments),
 }
@@ -211,6 +213,37 @@ pub(super) struct RmsArguments {
     /// Seed of the samples
     #[arg(long, default_value_t = 1)]
     pub(super) seed: u64,
+    /// A scene whose `[[define.kernel]]` and `[[define.lattice]]` may be named as well
+    #[arg(long, value_name = "SCENE")]
+    pub(super) define: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SymbolArguments {
+    /// An id of the catalogue (S1-7-F2), or an operator in the language
+    #[arg(value_name = "OPERATOR", allow_hyphen_values = true)]
+    pub(super) operator: String,
+    /// Id of the kernel, or a TOML or JSON file with `pieces`
+    #[arg(long, value_name = "NAME|FILE", default_value = "wendland-c2")]
+    pub(super) kernel: String,
+    /// Id of the lattice, all of whose sites must see the same
+    #[arg(long, default_value = "square")]
+    pub(super) lattice: String,
+    /// R/Δ, a decimal or p/q
+    #[arg(long, allow_hyphen_values = true, default_value = "3")]
+    pub(super) support_over_dx: String,
+    /// Direction of k: x, y, z, or components like 1,1
+    #[arg(long, default_value = "x", allow_hyphen_values = true)]
+    pub(super) direction: String,
+    /// How many waves, evenly up to k Δ = π
+    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub(super) waves: u16,
+    /// Volumes: constant or number-density
+    #[arg(long, default_value = "constant")]
+    pub(super) volume_rule: String,
     /// A scene whose `[[define.kernel]]` and `[[define.lattice]]` may be named as well
     #[arg(long, value_name = "SCENE")]
     pub(super) define: Option<PathBuf>,

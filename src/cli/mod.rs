@@ -10,6 +10,7 @@ mod kernel;
 mod progress;
 mod rms;
 mod sums;
+mod symbol;
 mod terminal;
 
 pub use arguments::Arguments;
@@ -38,6 +39,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Kernel(named) => kernel::audit(named),
         Command::Expand(operator) => expand::expand(operator),
         Command::Rms(arguments) => rms::rms(arguments),
+        Command::Symbol(arguments) => symbol::symbol(arguments),
         Command::List(list) => catalogue::list(list),
     };
     match done {

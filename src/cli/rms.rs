@@ -23,14 +23,7 @@ pub(super) fn rms(arguments: &RmsArguments) -> Result<Exit, Failure> {
     let kernel = named(&arguments.kernel, &own_kernels)?;
     let lattice = lattice_among(&arguments.lattice, &own_lattices).map_err(|error| fault(&error))?;
     let rule = VolumeRule::by_id(&arguments.volume_rule).map_err(|error| fault(&error))?;
-    let support = parse_rational(&arguments.support_over_dx).map_err(|error| fault(&error))?;
-    let support_over_dx = rational_to_f64(&support);
-    if !(support_over_dx > 0.0 && support_over_dx <= LARGEST_SUPPORT) {
-        return Err(Failure::Arguments(format!(
-            "R/Δ = {} is not between 0 and {LARGEST_SUPPORT}",
-            arguments.support_over_dx
-        )));
-    }
+    let support_over_dx = support_of(&arguments.support_over_dx)?;
     let disorder = Disorder::parse(&arguments.disorder).map_err(|error| fault(&error))?;
     disorder.check_dimension(&lattice).map_err(|error| fault(&error))?;
     disorder.check_reach(&lattice).map_err(|error| fault(&error))?;
@@ -79,4 +72,14 @@ pub(super) fn rms(arguments: &RmsArguments) -> Result<Exit, Failure> {
     let report = RmsReport::new(&subject, &error, sampled.as_ref());
     print_out(&if arguments.json { to_json(&report) } else { report.to_text() });
     Ok(Exit::AsExpected)
+}
+
+/// R/Δ from a decimal or p/q.
+pub(super) fn support_of(text: &str) -> Result<f64, Failure> {
+    let support = parse_rational(text).map_err(|error| Failure::Arguments(error.to_string()))?;
+    let support = rational_to_f64(&support);
+    if support > 0.0 && support <= LARGEST_SUPPORT {
+        return Ok(support);
+    }
+    Err(Failure::Arguments(format!("R/Δ = {text} is not between 0 and {LARGEST_SUPPORT}")))
 }

@@ -6,6 +6,7 @@ use crate::kernel::{Evaluator, Kernel};
 use crate::language::ground::{Ground, MissingQuantity};
 use crate::language::tree::{Field, OfParticle};
 use crate::language::{Coefficient, Subject};
+use crate::particles::{Lattice, VolumeRule};
 use num_traits::ToPrimitive as _;
 
 /// Particles around particle i, lengths in units of R: the ground of one sample, or of one regular neighbourhood.
@@ -80,6 +81,42 @@ impl Ground<f64> for Patch<'_> {
         lanes[0] = (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt();
         self.evaluator.evaluate(&lanes).g.map(|values| values[0])
     }
+}
+
+/// The lattice around a particle, out to R/Δ = `radius`, twice as far if an operator sums over neighbours of neighbours.
+pub(super) fn regular_patch<'a>(
+    evaluator: &'a Evaluator<f64>,
+    h: f64,
+    lattice: &Lattice,
+    radius: f64,
+    rule: VolumeRule,
+    nested: bool,
+) -> Patch<'a> {
+    let dimension = lattice.dimension();
+    let reach = if nested { 2.0 } else { 1.0 };
+    let sites = lattice.sites_within(reach * radius);
+    let places: Vec<[f64; 3]> = sites.iter().map(|site| site.position.map(|x| x / radius)).collect();
+    let centre = sites.iter().position(|site| site.cell == [0; 3] && site.basis == 0).unwrap_or(0);
+    let square = |x: &[f64; 3]| x.iter().map(|x| x * x).sum::<f64>();
+    let inside = places.iter().enumerate().filter(|(_, place)| square(place) < 1.0);
+    let of_centre: Vec<(usize, [f64; 3])> = inside.map(|(q, place)| (q, place.map(|x| -x))).collect();
+    let volume = match rule {
+        VolumeRule::Constant => {
+            let volume = lattice.particle_volume().enclose(96).midpoint_f64();
+            (0..dimension).fold(volume, |volume, _| volume / radius)
+        }
+        VolumeRule::NumberDensity => {
+            let patch_kernel = |x: f64| {
+                let mut lanes = [2.0; 8];
+                lanes[0] = x;
+                evaluator.evaluate(&lanes).g[0][0]
+            };
+            1.0 / of_centre.iter().map(|(_, r)| patch_kernel(square(r).sqrt())).sum::<f64>()
+        }
+    };
+    let volumes = vec![volume; places.len()];
+    let kernel_of_centre = kernel_of_centre(evaluator, &of_centre, places.len());
+    Patch { dimension, evaluator, h, centre, of_centre, kernel_of_centre, volumes, places }
 }
 
 /// The components of each coefficient among the subjects, in units of R, the target not taken off; and the magnitude of

@@ -12,6 +12,7 @@ mod program;
 mod regular;
 mod sample;
 mod stencil;
+mod symbol;
 mod tensor;
 pub mod window;
 
@@ -24,3 +25,4 @@ pub use sample::{
     neighbourhood_radius, summarise,
 };
 pub use stencil::{Degeneracy, Stencil, StencilEntry, StencilError, stencil};
+pub use symbol::{Symbol, SymbolError, SymbolValue};

@@ -1,7 +1,7 @@
 //! Rungs of the regular ladder at one R/Δ and its offsets: exact lattice sums of moments, stencils in floating point for
 //! what an operator's expansion multiplies ∇^m u by.
 
-use super::coefficient::{Patch, coefficients, kernel_of_centre, made_ready, norm, target_components};
+use super::coefficient::{coefficients, made_ready, norm, regular_patch, target_components};
 use super::sample::FLOOR_FACTOR;
 use super::stencil::StencilError;
 use crate::exact::{Enclosure, Rational, int, rational_to_f64};
@@ -144,33 +144,9 @@ fn coefficient_norms(spec: &RegularSpec, support: &Rational) -> Result<Vec<Regul
         return Ok(Vec::new());
     }
     let dimension = spec.lattice.dimension();
-    let radius = rational_to_f64(support);
     let (evaluator, h) = made_ready(&spec.kernel, dimension);
-    let reach = if asked.iter().any(|coefficient| coefficient.is_nested()) { 2.0 } else { 1.0 };
-    let sites = spec.lattice.sites_within(reach * radius);
-    let places: Vec<[f64; 3]> = sites.iter().map(|site| site.position.map(|x| x / radius)).collect();
-    let centre = sites.iter().position(|site| site.cell == [0; 3] && site.basis == 0).unwrap_or(0);
-    let square = |x: &[f64; 3]| x.iter().map(|x| x * x).sum::<f64>();
-    let inside = places.iter().enumerate().filter(|(_, place)| square(place) < 1.0);
-    let of_centre: Vec<(usize, [f64; 3])> = inside.map(|(q, place)| (q, place.map(|x| -x))).collect();
-    let volume = match spec.rule {
-        VolumeRule::Constant => {
-            let volume = spec.lattice.particle_volume().enclose(96).midpoint_f64();
-            (0..dimension).fold(volume, |volume, _| volume / radius)
-        }
-        VolumeRule::NumberDensity => {
-            let patch_kernel = |x: f64| {
-                let mut lanes = [2.0; 8];
-                lanes[0] = x;
-                evaluator.evaluate(&lanes).g[0][0]
-            };
-            1.0 / of_centre.iter().map(|(_, r)| patch_kernel(square(r).sqrt())).sum::<f64>()
-        }
-    };
-    let volumes = vec![volume; places.len()];
-    let kernel_of_centre = kernel_of_centre(&evaluator, &of_centre, places.len());
-    let patch =
-        Patch { dimension, evaluator: &evaluator, h, centre, of_centre, kernel_of_centre, volumes, places };
+    let nested = asked.iter().any(|coefficient| coefficient.is_nested());
+    let patch = regular_patch(&evaluator, h, &spec.lattice, rational_to_f64(support), spec.rule, nested);
     let values = coefficients(&spec.subjects, &patch)?;
     let norms = asked.iter().zip(values).map(|(coefficient, (components, magnitude))| {
         let power = Subject::Coefficient((*coefficient).clone()).length_power();

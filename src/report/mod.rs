@@ -7,6 +7,7 @@ mod markdown;
 mod printed;
 mod record;
 mod rms;
+mod symbol;
 mod table;
 mod write;
 
@@ -19,5 +20,6 @@ pub use markdown::markdown;
 pub use printed::{PrintedError, PrintedVerdict, printed_markdown, printed_verdicts};
 pub use record::*;
 pub use rms::{RmsReport, SampledReport};
+pub use symbol::{NullMode, SymbolReport, WaveReport, symbol_report};
 pub use table::{Row, Section, sections};
 pub use write::{WriteError, check_target, write_report};
