@@ -7,6 +7,7 @@ mod execute;
 mod exit;
 mod expand;
 mod kernel;
+mod orders;
 mod progress;
 mod sums;
 mod terminal;
@@ -36,6 +37,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Schema(schema) => catalogue::schema(schema.of),
         Command::Kernel(named) => kernel::audit(named),
         Command::Expand(operator) => expand::expand(operator),
+        Command::Orders(arguments) => orders::orders(arguments),
         Command::List(list) => catalogue::list(list),
     };
     match done {

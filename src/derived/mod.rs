@@ -1,11 +1,12 @@
-//! The derived column: operators expanded in their Taylor series, with proofs of what vanishes. No particle is placed, no
-//! number is fitted or drawn.
+//! The derived column: operators expanded in their Taylor series, with proofs of what vanishes; orders of moment sums by
+//! Poisson's formula. No particle is placed, no number is fitted or drawn.
 //!
 //! - `algebra`, `canonical`, `normal`, `rules`: expressions and their normal form.
 //! - `build`: from an operator's tree to its expression, the Taylor series in place of the field.
 //! - `expansion`: order by order, what multiplies ∇^m u, and what is left when the target is taken off.
 //! - `arrangement`: particles with rational places, on which what is left is shown not to vanish.
 //! - `conserve`: which sums are conserved, whatever the field.
+//! - `orders`: moment sums as powers of Δ/h and of the displacement.
 
 mod algebra;
 mod arrangement;
@@ -16,6 +17,7 @@ mod error;
 mod evaluate;
 mod expansion;
 mod normal;
+mod orders;
 mod rules;
 mod write;
 
@@ -23,4 +25,8 @@ pub use arrangement::Arrangement;
 pub use conserve::{Conservation, Conserved};
 pub use error::DeriveError;
 pub use expansion::{Expansion, MOST_ORDER, OrderTerms, VanishingTerm};
+pub use orders::{
+    Amplitude, ComponentOrder, Contribution, Deviation, DisorderOrder, DisorderTerm, Displaced, Envelope,
+    RegularOrder, Source, Term,
+};
 pub use write::{Format, Printed};
