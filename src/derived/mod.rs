@@ -26,7 +26,7 @@ pub use conserve::{Conservation, Conserved};
 pub use error::DeriveError;
 pub use expansion::{Expansion, MOST_ORDER, OrderTerms, VanishingTerm};
 pub use orders::{
-    Amplitude, ComponentOrder, Contribution, Deviation, DisorderOrder, DisorderTerm, Displaced, Envelope,
-    RegularOrder, Source, Term,
+    Amplitude, ComponentOrder, Contribution, Crossing, Deviation, DisorderOrder, DisorderTerm, Displaced,
+    Envelope, RegularOrder, Source, Term,
 };
 pub use write::{Format, Printed};

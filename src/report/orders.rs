@@ -102,8 +102,8 @@ pub struct ComponentReport {
     pub envelope: Option<[f64; 2]>,
     /// The R/Δ from which on all further terms are below a tenth of the envelope.
     pub asymptotic_from: Option<f64>,
-    /// The R/Δ at which the deviation crosses zero; null if the amplitude has no bound.
-    pub zero_crossings: Option<Vec<f64>>,
+    /// The R/Δ at which the deviation crosses zero, each with how far off it may be; null if the amplitude has no bound.
+    pub zero_crossings: Option<Vec<[f64; 2]>>,
 }
 
 /// What one disorder adds.
@@ -233,7 +233,9 @@ fn components(order: &RegularOrder, (from, to): (f64, f64)) -> Vec<ComponentRepo
             exact: exact.filter(|e| !e.is_empty()).map(|e| rational_text(&e.into_iter().sum())),
             envelope: envelopes[index].map(|envelope| [envelope.value, envelope.radius]),
             asymptotic_from: starts[index],
-            zero_crossings: crossings.as_ref().map(|crossings| crossings[index].clone()),
+            zero_crossings: crossings
+                .as_ref()
+                .map(|all| all[index].iter().map(|c| [c.support_over_dx, c.radius]).collect()),
         }
     });
     each.collect()
@@ -366,7 +368,7 @@ impl ComponentReport {
             None => return vec![first],
             Some(crossings) if crossings.is_empty() => format!("      no zero for {from} < R/Δ < {to}"),
             Some(crossings) => {
-                let all: Vec<String> = crossings.iter().map(|u| format!("{u:.3}")).collect();
+                let all: Vec<String> = crossings.iter().map(|[u, radius]| place(*u, *radius)).collect();
                 format!("      zero at R/Δ = {}", all.join(", "))
             }
         };
@@ -376,6 +378,11 @@ impl ComponentReport {
 
 fn short(value: f64) -> String {
     if value == 0.0 { "0".into() } else { format!("{value:.6}") }
+}
+
+/// Three decimals, and the radius where it is seen in them.
+fn place(value: f64, radius: f64) -> String {
+    if radius < 5e-4 { format!("{value:.3}") } else { format!("{value:.3} ± {radius:.0e}") }
 }
 
 /// Six digits, or as many as the radius leaves.

@@ -148,7 +148,15 @@ impl DisorderOrder {
                 case.shear(*random)
             }
         };
-        Ok(Self::sorted(terms, moment))
+        let mut order = Self::sorted(terms, moment);
+        if case.smoothness.is_zero() && kernel.polynomial().is_none() {
+            let square = kernel.support_over_h() * kernel.support_over_h();
+            order.reason += &format!(
+                "; a Gaussian jumps by exp(−{}) of its height only, which shows at the smallest d̃ alone",
+                rational_text(&square)
+            );
+        }
+        Ok(order)
     }
 
     /// The term that outweighs the others as Δ/h falls at fixed d̃/Δ.
@@ -193,13 +201,15 @@ const RANDOM_WALK: &str = "the random walk over the neighbours";
 const LONG_WAVES: &str = "the field's waves of length h";
 const CROSSING: &str = "the particles that cross the jump of the summand";
 const LATTICE: &str = "the lattice's tail";
+const EDGES: &str = "the rows' ends at the knots";
+const NEAREST_ROWS: &str = "the rows beside the particle's own";
 const OWN: &str = "the particle's own term";
 
 struct Case<'a> {
     dimension: usize,
     e: Rational,
     knot: Rational,
-    origin: Rational,
+    origin: Option<Rational>,
     smoothness: Rational,
     lattice: &'a Lattice,
     moment: Moment,
@@ -223,11 +233,11 @@ impl Case<'_> {
     }
 
     /// d̃^n (Δ/h)^{e−n} of a lattice sum moved rigidly, or by waves of its own length.
-    fn moved(&self, n: i64, e: &Rational) -> Row {
+    fn moved(&self, n: i64, e: &Rational, from: &'static str) -> Row {
         // Root mean square over R/Δ: Σ_K |K|^{D−1} |K|^{−2e} min(1, |K|d)^{2n} has its weight at |K| ~ 1/d once
         // n > m − q + 1/2.
         let power = int(n).min(&self.smoothness + ratio(1, 2));
-        (power.clone(), e - power, LATTICE)
+        (power.clone(), e - power, from)
     }
 
     fn offset(&self) -> Vec<Row> {
@@ -237,17 +247,18 @@ impl Case<'_> {
         let components = self.moment.components(self.dimension).into_iter();
         let mut gradients = components.flat_map(|c| gradient(&c.terms, self.dimension));
         let n = if gradients.any(|terms| symmetry.keeps_some(&terms)) { 1 } else { 2 };
-        vec![self.moved(n, &self.e), (int(own), int(self.dimension as i64), OWN)]
+        vec![self.moved(n, &self.e, LATTICE), (int(own), int(self.dimension as i64), OWN)]
     }
 
     fn wave(&self, in_h: bool, transverse: bool) -> Vec<Row> {
         if !in_h {
-            return vec![self.moved(1, &self.e)];
+            return vec![self.moved(1, &self.e, LATTICE)];
         }
         // Σ_j ω ∇f·e (1 − e^{−ik·r}): at the origin the bracket is a power of kr, the first or, by inversion, the second.
         let even = (self.moment.positions() + self.moment.derivatives()) % 2 == 0;
-        let at_origin = &self.origin + int(if even { 1 } else { 2 });
-        let lattice = self.moved(1, &self.knot.clone().min(at_origin));
+        let at_origin = self.origin.as_ref().map(|origin| origin + int(if even { 1 } else { 2 }));
+        let least = at_origin.map_or(self.knot.clone(), |origin| origin.min(self.knot.clone()));
+        let lattice = self.moved(1, &least, LATTICE);
         if transverse {
             return vec![lattice];
         }
@@ -261,7 +272,10 @@ impl Case<'_> {
             self.moment.components(self.dimension).iter().all(|c| c.name.len() == usize::from(p));
         let rank = if contracted { p } else { p + q };
         let first = if random { rank > 0 } else { rank % 2 == 1 };
-        vec![self.moved(if first { 1 } else { 2 }, &self.e)]
+        let n = if first { 1 } else { 2 };
+        let mut rows = vec![self.moved(n, &self.knot, EDGES)];
+        rows.extend(self.origin.as_ref().map(|origin| (int(n), origin - int(n), NEAREST_ROWS)));
+        rows
     }
 }
 

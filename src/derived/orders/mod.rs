@@ -42,4 +42,4 @@ mod tail;
 
 pub use disorder::{DisorderOrder, DisorderTerm, Displaced};
 pub use regular::{Amplitude, ComponentOrder, Contribution, RegularOrder, Source, Term};
-pub use series::{Deviation, Envelope};
+pub use series::{Crossing, Deviation, Envelope};

@@ -134,8 +134,7 @@ impl RegularOrder {
     /// Derives the orders of `moment`.
     ///
     /// # Errors
-    /// [`DeriveError::SingularSummand`] if ∇^q W is singular at the origin, [`DeriveError::Dimension`] if the lattice has
-    /// none of 1, 2, 3.
+    /// [`DeriveError::SingularSummand`] if ∇^q W is singular at the origin.
     pub fn of(kernel: &Kernel, lattice: &Lattice, moment: Moment) -> Result<Self, DeriveError> {
         let mut symmetry = Symmetry::of(lattice);
         let dimension = lattice.dimension();
@@ -244,7 +243,8 @@ pub(super) fn formal_exponent(
             derivatives: q,
         });
     }
-    Ok(formal_knot(kernel, dimension, moment).min(formal_origin(kernel, dimension, moment)))
+    let knot = formal_knot(kernel, dimension, moment);
+    Ok(formal_origin(kernel, dimension, moment).map_or(knot.clone(), |origin| origin.min(knot)))
 }
 
 /// (D + 1)/2 + max(m − q, 0) for the roughest knot.
@@ -255,13 +255,10 @@ pub(super) fn formal_knot(kernel: &Kernel, dimension: usize, moment: Moment) -> 
     ratio(dimension as i64 + 1, 2) + int(above as i64)
 }
 
-/// D + s + p − q for the first odd power; above every knot's if there is none.
-pub(super) fn formal_origin(kernel: &Kernel, dimension: usize, moment: Moment) -> Rational {
-    let d = dimension as i64;
-    match kernel.first_odd_power() {
-        Some(s) => int(d + s as i64 + i64::from(moment.length_power())),
-        None => formal_knot(kernel, dimension, moment) + int(KEPT + 2),
-    }
+/// D + s + p − q for the first odd power, if there is one.
+pub(super) fn formal_origin(kernel: &Kernel, dimension: usize, moment: Moment) -> Option<Rational> {
+    let s = kernel.first_odd_power()?;
+    Some(int(dimension as i64 + s as i64 + i64::from(moment.length_power())))
 }
 
 /// σ_D w_s ω Σ_t c_t s(s−2)…(s−2k_t+2) Z(μ_t, s − 2k_t).

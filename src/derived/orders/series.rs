@@ -36,6 +36,15 @@ pub struct Envelope {
     pub radius: f64,
 }
 
+/// An R/Δ at which a deviation crosses zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// R/Δ.
+    pub support_over_dx: f64,
+    /// How far off it may be: the radius of the [`Deviation`] there over its slope.
+    pub radius: f64,
+}
+
 /// The shells, and what each term makes of them; by component and term, none for a term of the origin.
 #[derive(Debug, Clone)]
 pub(super) struct Series {
@@ -247,7 +256,7 @@ impl RegularOrder {
     ///
     /// # Errors
     /// As [`RegularOrder::at`].
-    pub fn zero_crossings(&self, from: f64, to: f64) -> Result<Vec<Vec<f64>>, DeriveError> {
+    pub fn zero_crossings(&self, from: f64, to: f64) -> Result<Vec<Vec<Crossing>>, DeriveError> {
         self.check_convergence()?;
         let mut crossings = vec![Vec::new(); self.components.len()];
         let steps = ((to - from) / STEP).ceil() as usize;
@@ -267,7 +276,9 @@ impl RegularOrder {
                     let value = self.sum_component(index, middle, &self.kept, &turns).value;
                     *(if (value < 0.0) == (a < 0.0) { &mut left } else { &mut end }) = middle;
                 }
-                crossings[index].push((left + end) / 2.0);
+                let support_over_dx = (left + end) / 2.0;
+                let slope = (b - a).abs() / (right - (from + step as f64 * STEP));
+                crossings[index].push(Crossing { support_over_dx, radius: before[index].radius / slope });
             }
             before = after;
         }
