@@ -542,7 +542,8 @@ fn linear_response_has_the_derived_exponents() {
     type Rms = fn(&Linear) -> f64;
     let held = |linear: &Linear| linear.wave(6.0, 0);
     let across = |linear: &Linear| linear.wave(6.0, 1);
-    let cases: Vec<(&str, &str, &str, &str, Rms, [i64; 2])> = vec![
+    type Case<'a> = (&'a str, &'a str, &'a str, &'a str, Rms, [i64; 2]);
+    let cases: Vec<Case> = vec![
         ("wendland-c2", "line", "b_inverse", "box:0.1", Linear::independent, [32, 256]),
         ("wendland-c2", "square", "sum_dw", "box:0.1", Linear::independent, [16, 64]),
         ("cubic-spline", "hexagonal", "b_inverse", "box:0.1", Linear::independent, [16, 64]),
