@@ -13,7 +13,7 @@ fn every_moment_gets_its_orders() {
         "the jump of derivative 4 at R (Δ/h)^9/2, oscillating",
         "r^3 at the origin (Δ/h)^5",
         "zero at R/Δ = ",
-        "box: d̃ h^-1 (Δ/h)^1; the random walk over the neighbours",
+        "box: d̃ h^-1 (Δ/h); the random walk over the neighbours",
         "offset: d̃^2 h^-2 (Δ/h)^2; the particle's own term",
         "shear: d̃ h^-1 (Δ/h)^7/2",
         "paper: β+1 = 4 (regular-deviation, Table 2, row 3",
