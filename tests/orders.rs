@@ -69,8 +69,8 @@ fn support(from: i64, sixteenth: i64) -> Rational {
 }
 
 /// `derived::orders::series` against `sums::lattice_sum`: to 1 % of the envelope, and within the radius that it states.
-/// Planted and found: the sign of the jump's terms turned, the structure factor of the basis left out (hcp alone fails),
-/// ω left out of an origin's amplitude.
+/// Planted and found: the sign of the Bessel function's second term turned, the structure factor of the basis left out, ω left
+/// out of an origin's amplitude.
 #[test]
 fn terms_add_up_to_the_lattice_sum() {
     for (kernel_id, lattice_id, moments) in CASES {
@@ -138,7 +138,7 @@ fn what_is_left_falls_at_the_next_exponent() {
 }
 
 /// No value exceeds the envelope, and on a line, where one period is all, some come near it.
-/// Planted and found: the sum of moduli in place of the supremum of each class.
+/// Planted and found: the exponents of knots raised by one.
 #[test]
 fn envelopes_are_suprema() {
     for (kernel_id, lattice_id, name, least) in [
@@ -182,13 +182,13 @@ fn exact_sums_change_sign_at_the_crossings() {
         let exact = Exact::new(&kernel, &lattice, moment, &int(9));
         let at = |u: f64| exact.at(&ratio((u * 1e6).round() as i64, 1_000_000))[0];
         for crossing in &crossings {
-            let (u, near) = (crossing.support_over_dx, crossing.radius + 1e-4);
+            let (u, near) = (crossing.support_over_dx, crossing.radius + 2e-6);
             println!("{kernel_id} {lattice_id} {name}: {u} ± {}", crossing.radius);
             assert!(at(u - near) * at(u + near) < 0.0, "{kernel_id} {lattice_id} {name}: {crossing:?}");
         }
         // None is missed from where on all are sharp.
         let blurred = crossings.iter().filter(|c| c.radius > 0.01).map(|c| c.support_over_dx + c.radius);
-        let from = blurred.fold(2.0, f64::max);
+        let from = blurred.fold(3.1, f64::max);
         let sharp = crossings.iter().filter(|c| c.support_over_dx > from).count();
         let steps = ((8.0 - from) / 0.002) as usize;
         let changes = (0..steps).filter(|k| {
@@ -428,8 +428,10 @@ fn starts_late(order: &RegularOrder) -> bool {
     latest > 16.0
 }
 
-/// The Gaussian jumps by exp(−9) at R: d̃^{1/2} is below the smooth part's d̃ at all amplitudes that were measured.
-/// On the cubic lattice the offset's two terms tie for the cubic spline, and the lattice's oscillates.
+/// - The Gaussian jumps by exp(−9) at R: d̃^{1/2} is below the smooth part's d̃ at all amplitudes that were measured.
+/// - The offset's terms tie on the cubic lattice for the cubic spline, and on hcp, whose sites are no centres of inversion.
+/// - ∫ x² W′ sin kx dx ~ ∫ x³ (1 − x)³ sin 2πx dx vanishes by symmetry: the continuum does not answer this one wave.
+/// - Σωrr∇W under shear for the cubic spline: see the linear response above, which has the derived exponent farther out.
 const APART: &[&str] = &[
     "displacement sum_dw disorder-deviation gaussian",
     "displacement b_inverse disorder-deviation gaussian",
@@ -438,6 +440,12 @@ const APART: &[&str] = &[
     "displacement sum_ddw disorder-deviation gaussian",
     "displacement sum_rddw disorder-deviation gaussian",
     "dx_over_h sum_dw disorder-deviation cubic-spline simple-cubic offset",
+    "dx_over_h b_inverse disorder-deviation wendland-c2 hcp offset",
+    "dx_over_h sum_ddw disorder-deviation wendland-c2 hcp offset",
+    "displacement b_inverse disorder-deviation wendland-c2 hcp offset",
+    "displacement sum_ddw disorder-deviation wendland-c2 hcp offset",
+    "dx_over_h sum_rrdw disorder-deviation wendland-c2 line wave:0.1,wavelength=1,unit=h",
+    "dx_over_h sum_rrdw disorder-deviation cubic-spline square shear",
 ];
 
 /// J of S − S^reg = Σ_j J_j·(d_i − d_j) for each component, in f64: the sites, their rows, and J by component. h = 1.
@@ -536,7 +544,7 @@ impl Linear {
 }
 
 /// `derived::orders::disorder` against the variance of the linear response, summed particle by particle without a random
-/// number. Planted and found: D/2 made D in `spectrum`, and the particle's own row counted among the others.
+/// number. Planted and found: D/2 made D in `spectrum`, the rows beside the particle's own taken one power smaller.
 #[test]
 fn linear_response_has_the_derived_exponents() {
     type Rms = fn(&Linear) -> f64;
@@ -551,6 +559,7 @@ fn linear_response_has_the_derived_exponents() {
         ("wendland-c2", "square", "sum_dw", "shear:0.1", Linear::shear, [32, 128]),
         ("wendland-c2", "square", "b_inverse", "shear:0.1", Linear::shear, [16, 64]),
         ("cubic-spline", "square", "sum_dw", "shear:0.1", Linear::shear, [16, 64]),
+        ("cubic-spline", "square", "sum_rrdw", "shear:0.1", Linear::shear, [64, 256]),
         ("wendland-c2", "square", "b_inverse", "wave:0.1,wavelength=1", held, [16, 64]),
         (
             "wendland-c2",
@@ -566,7 +575,7 @@ fn linear_response_has_the_derived_exponents() {
             "b_inverse",
             "wave:0.1,wavelength=5,unit=dx",
             |linear| linear.wave(std::f64::consts::TAU / (5.0 * linear.dx), 0),
-            [16, 64],
+            [64, 256],
         ),
     ];
     let slope =

@@ -15,7 +15,8 @@
 //! | S(k) ~ k^a up to 1/Δ | d̃ (Δ/h)^{(D+a)/2}, d̃ (Δ/h)^{e−1} | ∫ S(k) \|k f̂(k)\|² dk below and at 1/Δ |
 //!
 //! e is the exponent of the lattice's deviation, symmetry left aside. Where m − q = 0, f itself jumps at a knot: particles
-//! that cross it add d̃^{1/2} in place of d̃. Two terms compare at fixed d̃/Δ, as ladders in either variable do that hold
+//! that cross it add d̃^{1/2} in place of d̃. A wave held in h can have a length at which f̂ vanishes (Σωrr∇W of Wendland C2 on a
+//! line at λ = R): the exponents are those of other lengths. Two terms compare at fixed d̃/Δ, as ladders in either variable do that hold
 //! displacements below the spacing.
 
 use super::regular::{formal_exponent, formal_knot, formal_origin};
@@ -203,6 +204,7 @@ const CROSSING: &str = "the particles that cross the jump of the summand";
 const LATTICE: &str = "the lattice's tail";
 const EDGES: &str = "the rows' ends at the knots";
 const NEAREST_ROWS: &str = "the rows beside the particle's own";
+const EVEN_PART: &str = "the even part of the lattice's tail";
 const OWN: &str = "the particle's own term";
 
 struct Case<'a> {
@@ -247,7 +249,12 @@ impl Case<'_> {
         let components = self.moment.components(self.dimension).into_iter();
         let mut gradients = components.flat_map(|c| gradient(&c.terms, self.dimension));
         let n = if gradients.any(|terms| symmetry.keeps_some(&terms)) { 1 } else { 2 };
-        vec![self.moved(n, &self.e, LATTICE), (int(own), int(self.dimension as i64), OWN)]
+        let mut rows = vec![self.moved(n, &self.e, LATTICE), (int(own), int(self.dimension as i64), OWN)];
+        if n == 1 && (p + q) % 2 == 0 {
+            // A site without inversion: what inversion leaves is of the same size at fixed d̃/Δ, and often larger.
+            rows.push(self.moved(2, &self.e, EVEN_PART));
+        }
+        rows
     }
 
     fn wave(&self, in_h: bool, transverse: bool) -> Vec<Row> {

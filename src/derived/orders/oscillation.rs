@@ -256,3 +256,22 @@ pub(super) fn monomials<'a>(polynomials: impl Iterator<Item = &'a Spherical>) ->
     all.dedup();
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::{int, ratio};
+
+    /// cos x − cos 2x lies between −2 and 9/8; the sum of moduli is 2. Planted and found: that sum.
+    #[test]
+    fn waves_of_one_class_interfere() {
+        let wave = |frequency, phase| Wave { frequency, amplitude: 1.0, phase };
+        let (low, high, slack) = extremes_of_class(&[wave(ratio(1, 3), 0.0), wave(ratio(2, 3), PI)]);
+        assert!(
+            (low + 2.0).abs() <= slack && (high - 1.125).abs() <= slack && slack < 0.01,
+            "{low} {high} {slack}"
+        );
+        let (low, high, _) = extremes_of_class(&[wave(int(7), 1.0)]);
+        assert_eq!((low, high), (-1.0, 1.0));
+    }
+}

@@ -36,12 +36,15 @@ pub struct Envelope {
     pub radius: f64,
 }
 
+/// A sign that is not certain within this of a zero is none to speak of.
+const FARTHEST: f64 = 0.25;
+
 /// An R/Δ at which a deviation crosses zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
     /// R/Δ.
     pub support_over_dx: f64,
-    /// How far off it may be: the radius of the [`Deviation`] there over its slope.
+    /// At this distance on both sides the sign is certain: the deviation exceeds its radius.
     pub radius: f64,
 }
 
@@ -258,31 +261,53 @@ impl RegularOrder {
     /// As [`RegularOrder::at`].
     pub fn zero_crossings(&self, from: f64, to: f64) -> Result<Vec<Vec<Crossing>>, DeriveError> {
         self.check_convergence()?;
-        let mut crossings = vec![Vec::new(); self.components.len()];
-        let steps = ((to - from) / STEP).ceil() as usize;
+        let mut crossings: Vec<Vec<Crossing>> = vec![Vec::new(); self.components.len()];
+        let place = |step: usize| (from + step as f64 * STEP).min(to);
         let mut before = self.sum(from, &self.kept);
-        for step in 0..steps {
-            let right = (from + (step + 1) as f64 * STEP).min(to);
-            let after = self.sum(right, &self.kept);
-            for index in 0..self.components.len() {
-                let (a, b) = (before[index].value, after[index].value);
-                if a == 0.0 || (a < 0.0) == (b < 0.0) {
-                    continue;
+        for step in 0..((to - from) / STEP).ceil() as usize {
+            let after = self.sum(place(step + 1), &self.kept);
+            for (index, found) in crossings.iter_mut().enumerate() {
+                if (before[index].value < 0.0) != (after[index].value < 0.0) {
+                    let crossing = self.crossing(index, place(step), place(step + 1));
+                    // Rounding may cross a flat zero more than once.
+                    let again = |last: &Crossing| {
+                        crossing.is_some_and(|c| {
+                            c.support_over_dx - last.support_over_dx <= last.radius + c.radius
+                        })
+                    };
+                    if !found.last().is_some_and(again) {
+                        found.extend(crossing);
+                    }
                 }
-                let (mut left, mut end) = (from + step as f64 * STEP, right);
-                for _ in 0..24 {
-                    let middle = (left + end) / 2.0;
-                    let turns = self.all_turns(middle);
-                    let value = self.sum_component(index, middle, &self.kept, &turns).value;
-                    *(if (value < 0.0) == (a < 0.0) { &mut left } else { &mut end }) = middle;
-                }
-                let support_over_dx = (left + end) / 2.0;
-                let slope = (b - a).abs() / (right - (from + step as f64 * STEP));
-                crossings[index].push(Crossing { support_over_dx, radius: before[index].radius / slope });
             }
             before = after;
         }
         Ok(crossings)
+    }
+
+    /// The crossing between two places at which a component has different signs, and how far from it the sign is certain;
+    /// `None` if it is the same on both sides, as where a spline reproduces polynomials.
+    fn crossing(&self, index: usize, mut low: f64, mut high: f64) -> Option<Crossing> {
+        let at = |u: f64| self.sum(u, &self.kept).swap_remove(index);
+        let negative = at(low).value < 0.0;
+        for _ in 0..24 {
+            let middle = (low + high) / 2.0;
+            *(if (at(middle).value < 0.0) == negative { &mut low } else { &mut high }) = middle;
+        }
+        let zero = (low + high) / 2.0;
+        let certain = |u: f64| {
+            let deviation = at(u);
+            (deviation.value.abs() > deviation.radius).then_some(deviation.value < 0.0)
+        };
+        let mut radius = 1e-6;
+        while radius < FARTHEST {
+            if let (Some(left), Some(right)) = (certain(zero - radius), certain(zero + radius)) {
+                return (left != right).then_some(Crossing { support_over_dx: zero, radius });
+            }
+            radius *= 2.0;
+        }
+        // The sum is not certain of any sign nearby.
+        None
     }
 }
 
