@@ -17,7 +17,7 @@ mod error;
 mod evaluate;
 mod expansion;
 mod normal;
-mod orders;
+pub mod orders;
 mod rules;
 mod write;
 

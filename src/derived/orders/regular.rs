@@ -103,7 +103,7 @@ impl ComponentOrder {
 }
 
 /// The deviation S − continuum limit of a moment sum with constant volumes at a particle of a regular lattice, as a
-/// function of Δ/h at fixed h: Σ (amplitude) (Δ/h)^e, see [`crate::derived`] and the table of exponents there.
+/// function of Δ/h at fixed h: Σ (amplitude) (Δ/h)^e, derived in [`crate::derived::orders`].
 ///
 /// # Examples
 /// ```
