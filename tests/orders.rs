@@ -312,6 +312,7 @@ fn exponents_under_disorder() {
         ("wendland-c2", "square", "sum_rddw", "offset:0.1", "1", "2"),
         ("wendland-c4", "square", "sum_rrdw", "offset:0.1", "3", "2"),
         ("wendland-c2", "hcp", "sum_w", "offset:0.1", "2", "3"),
+        ("cubic-spline", "square", "b_inverse", "offset:0.1", "2", "3/2"),
         ("wendland-c2", "square", "b_inverse", "wave:0.1,wavelength=1", "1", "0"),
         ("wendland-c2", "square", "b_inverse", "wave:0.1,wavelength=1,polarisation=transverse", "1", "7/2"),
         ("wendland-c2", "square", "b_inverse", "wave:0.1,wavelength=8,unit=dx", "1", "7/2"),
@@ -544,7 +545,7 @@ impl Linear {
 }
 
 /// `derived::orders::disorder` against the variance of the linear response, summed particle by particle without a random
-/// number. Planted and found: D/2 made D in `spectrum`, the rows beside the particle's own taken one power smaller.
+/// number.
 #[test]
 fn linear_response_has_the_derived_exponents() {
     type Rms = fn(&Linear) -> f64;
