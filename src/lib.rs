@@ -15,7 +15,7 @@
 //! | [`particles`] | lattices, disorder models, volume rules, clouds and neighbours |
 //! | [`sums`] | moment sums: exact on lattices, in floating point over pairs |
 //! | [`language`] | operators as text: parser, types, catalogue |
-//! | [`derived`] | symbolic expansions, proofs of exactness, conservation |
+//! | [`derived`] | symbolic expansions, proofs of exactness, conservation; orders of moment sums, amplitudes, zero crossings |
 //! | [`measured`] | ladders of sums, samples of disorder, fitted power laws |
 //! | [`claim`] | published statements as data, and verdicts |
 //! | [`study`] | scenes, plans, runs that resume |

@@ -17,6 +17,8 @@ mod expand;
 mod folder;
 #[path = "cli/interruptions.rs"]
 mod interruptions;
+#[path = "cli/orders.rs"]
+mod orders;
 #[path = "cli/plans.rs"]
 mod plans;
 #[path = "cli/reports.rs"]

@@ -35,6 +35,8 @@ pub(super) enum Command {
     Rms(RmsArguments),
     /// The Fourier symbol of an operator on a lattice: modified wavenumber, its error, null modes
     Symbol(SymbolArguments),
+    /// Derive the orders of moment sums: exponents, amplitudes and zero crossings on a lattice, exponents under disorder
+    Orders(OrdersArguments),
     /// List what can be named in a scene
     List(ListArguments),
 }
@@ -142,6 +144,37 @@ pub(super) struct SumsArguments {
     /// Memory that the sites may take
     #[arg(long, default_value_t = 2048)]
     pub(super) memory_mib: u64,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct OrdersArguments {
+    /// Id of the kernel, or a TOML or JSON file with `pieces`
+    #[arg(long, value_name = "NAME|FILE")]
+    pub(super) kernel: String,
+    /// Number of dimensions, for its default lattice: line, square, simple-cubic
+    #[arg(long = "dim", value_name = "D")]
+    pub(super) dimension: Option<u8>,
+    /// Id of the lattice
+    #[arg(long, value_name = "ID")]
+    pub(super) lattice: Option<String>,
+    /// A moment sum; may be given several times [default: the seven that `sums` takes]
+    #[arg(long = "moment", value_name = "NAME")]
+    pub(super) moments: Vec<String>,
+    /// A disorder, MODEL[:AMPLITUDE][,key=value…]; may be given several times [default: one of each kind]
+    #[arg(long = "disorder", value_name = "MODEL")]
+    pub(super) disorders: Vec<String>,
+    /// A displacement field of spectrum S(k) ~ k^A up to 1/Δ
+    #[arg(long, value_name = "A", allow_hyphen_values = true)]
+    pub(super) spectrum: Option<String>,
+    /// Zero crossings from this R/Δ
+    #[arg(long, default_value_t = 2.0, value_name = "R/Δ")]
+    pub(super) from: f64,
+    /// Zero crossings to this R/Δ
+    #[arg(long, default_value_t = 8.0, value_name = "R/Δ")]
+    pub(super) to: f64,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,

@@ -7,6 +7,7 @@ mod execute;
 mod exit;
 mod expand;
 mod kernel;
+mod orders;
 mod progress;
 mod rms;
 mod sums;
@@ -40,6 +41,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Expand(operator) => expand::expand(operator),
         Command::Rms(arguments) => rms::rms(arguments),
         Command::Symbol(arguments) => symbol::symbol(arguments),
+        Command::Orders(arguments) => orders::orders(arguments),
         Command::List(list) => catalogue::list(list),
     };
     match done {

@@ -11,7 +11,8 @@ use crate::sums::{Component, LatticeSums, Moment, Reduction, Standing, SumError,
 use serde_json::{Value, json};
 
 /// What is summed when no moment is named.
-const USUAL: [&str; 7] = ["sum_w", "sum_dw", "b_inverse", "sum_rrdw", "sum_rrrdw", "sum_ddw", "sum_rddw"];
+pub(super) const USUAL: [&str; 7] =
+    ["sum_w", "sum_dw", "b_inverse", "sum_rrdw", "sum_rrrdw", "sum_ddw", "sum_rddw"];
 
 /// Decimal digits that may be asked for; each costs time, and past this it is a slip of the finger.
 const MOST_DIGITS: u32 = 100_000;

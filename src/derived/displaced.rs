@@ -126,14 +126,14 @@ impl<'a> Neighbourhood<'a> {
 }
 
 /// A neighbourhood with its particles displaced.
-pub(super) struct Displaced<'a, T> {
+pub(super) struct DisplacedGround<'a, T> {
     around: &'a Neighbourhood<'a>,
     places: Vec<[T; 3]>,
     /// Of the particles that sums run over.
     volumes: Vec<T>,
 }
 
-impl<'a> Displaced<'a, Jet> {
+impl<'a> DisplacedGround<'a, Jet> {
     /// At the lattice sites, to be differentiated along these directions, at most [`LANES`] of them.
     pub(super) fn along(around: &'a Neighbourhood<'a>, modes: &[Mode]) -> Self {
         let mut places: Vec<[Jet; 3]> =
@@ -151,7 +151,7 @@ impl<'a> Displaced<'a, Jet> {
     }
 }
 
-impl<'a> Displaced<'a, f64> {
+impl<'a> DisplacedGround<'a, f64> {
     /// With the particles moved by `sign` times a pattern.
     pub(super) fn by(around: &'a Neighbourhood<'a>, mode: &Mode, sign: f64) -> Self {
         let mut places: Vec<[f64; 3]> = around.sites.iter().map(|site| site.position).collect();
@@ -165,7 +165,7 @@ impl<'a> Displaced<'a, f64> {
     }
 }
 
-impl<'a, T: Analytic> Displaced<'a, T> {
+impl<'a, T: Analytic> DisplacedGround<'a, T> {
     fn at(around: &'a Neighbourhood<'a>, places: Vec<[T; 3]>, moves: &[bool]) -> Self {
         let mut ground = Self { around, places, volumes: Vec::new() };
         let volume = |p: usize| match around.rule {
@@ -208,7 +208,7 @@ impl<'a, T: Analytic> Displaced<'a, T> {
     }
 }
 
-impl<T: Analytic> Ground<T> for Displaced<'_, T> {
+impl<T: Analytic> Ground<T> for DisplacedGround<'_, T> {
     fn dimension(&self) -> usize {
         self.around.lattice.dimension()
     }

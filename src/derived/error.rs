@@ -53,6 +53,50 @@ pub enum DeriveError {
         /// What was asked.
         what: &'static str,
     },
+    /// ∇^q W is singular at the origin, where the sum has no limit to have an order against.
+    #[error(
+        "{kernel} has the odd power r^{power} at the origin, so that the {derivatives} derivatives in {moment} are singular \
+         there: take a moment with fewer derivatives, or a kernel that is smoother at the origin"
+    )]
+    SingularSummand {
+        /// The moment.
+        moment: String,
+        /// The kernel.
+        kernel: String,
+        /// s.
+        power: usize,
+        /// q.
+        derivatives: usize,
+    },
+    /// A sum over reciprocal shells does not converge absolutely.
+    #[error(
+        "the sum over shells that multiplies (Δ/h)^{exponent} in {moment} does not converge absolutely: the exponent stands, \
+         the amplitude has no bound"
+    )]
+    Diverges {
+        /// The moment.
+        moment: String,
+        /// The leading exponent.
+        exponent: String,
+    },
+    /// A spectrum has no root mean square of its own.
+    #[error(
+        "a spectrum k^({exponent}) is not integrable at k = 0 in {dimension} dimensions: give an exponent above -{dimension}"
+    )]
+    Spectrum {
+        /// As asked.
+        exponent: String,
+        /// D.
+        dimension: usize,
+    },
+    /// A disorder has no meaning in one dimension.
+    #[error("{what} needs at least 2 dimensions, and lattice '{lattice}' has one: take a lattice of 2 or 3")]
+    DisorderDimension {
+        /// What.
+        what: &'static str,
+        /// The lattice.
+        lattice: String,
+    },
     /// The particles lack a quantity.
     #[error(transparent)]
     Missing(#[from] MissingQuantity),

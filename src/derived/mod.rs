@@ -1,5 +1,5 @@
-//! The derived column: operators expanded in their Taylor series, with proofs of what vanishes. No particle is placed, no
-//! number is fitted or drawn.
+//! The derived column: operators expanded in their Taylor series, with proofs of what vanishes; orders of moment sums by
+//! Poisson's formula. No particle is placed, no number is fitted or drawn.
 //!
 //! - `algebra`, `canonical`, `normal`, `rules`: expressions and their normal form.
 //! - `build`: from an operator's tree to its expression, the Taylor series in place of the field.
@@ -8,6 +8,7 @@
 //! - `jet`, `modes`, `displaced`, `rms`: the error on displaced particles, differentiated with respect to each of them.
 //! - `quadrature`, `expectation`, `finite`: moment sums averaged over the whole law of the displacements.
 //! - `conserve`: which sums are conserved, whatever the field.
+//! - `orders`: moment sums as powers of Δ/h and of the displacement.
 
 mod algebra;
 mod arrangement;
@@ -23,6 +24,7 @@ mod finite;
 mod jet;
 mod modes;
 mod normal;
+pub mod orders;
 mod quadrature;
 mod rms;
 mod rules;
@@ -33,5 +35,9 @@ pub use conserve::{Conservation, Conserved};
 pub use error::DeriveError;
 pub use expansion::{Expansion, MOST_ORDER, OrderTerms, VanishingTerm};
 pub use finite::finite;
+pub use orders::{
+    Amplitude, ComponentOrder, Contribution, Crossing, Deviation, DisorderOrder, DisorderTerm, Displaced,
+    Envelope, RegularOrder, Source, Term,
+};
 pub use rms::{ComponentError, Model, RmsError, Setting, linearised};
 pub use write::{Format, Printed};

@@ -5,7 +5,7 @@
 //! the exact derivatives with respect to the place of every particle that enters, volumes and B_i among what depends on it.
 
 use super::DeriveError;
-use super::displaced::{Analytic, Displaced, Neighbourhood};
+use super::displaced::{Analytic, DisplacedGround, Neighbourhood};
 use super::expansion::Expansion;
 use super::jet::{Jet, LANES};
 use super::modes::{Mode, Modes};
@@ -131,7 +131,7 @@ pub fn linearised(setting: &Setting<'_>, subject: &Subject) -> Result<RmsError, 
     let still = Modes { mean: Mode::new(), random: vec![Mode::new()] };
     let random = if modes.random.is_empty() { &still.random } else { &modes.random };
     for block in random.chunks(LANES) {
-        let errors = evaluated(&what, &Displaced::along(&around, block))?;
+        let errors = evaluated(&what, &DisplacedGround::along(&around, block))?;
         for ((component, jet), trace) in components.iter_mut().zip(&errors).zip(&mut trace) {
             component.regular = jet.value - component.limit;
             for lane in 0..block.len() {
@@ -140,7 +140,7 @@ pub fn linearised(setting: &Setting<'_>, subject: &Subject) -> Result<RmsError, 
             }
         }
     }
-    let along_mean = evaluated(&what, &Displaced::along(&around, std::slice::from_ref(&modes.mean)))?;
+    let along_mean = evaluated(&what, &DisplacedGround::along(&around, std::slice::from_ref(&modes.mean)))?;
     for ((component, trace), shift) in components.iter_mut().zip(&trace).zip(&along_mean) {
         let second = shift.first[0] + 0.5 * (shift.second[0] + trace);
         component.mean = component.regular + second;
@@ -167,14 +167,17 @@ fn left_out(
     error: &RmsError,
 ) -> Result<f64, DeriveError> {
     let designs = modes.signed_sums(DESIGNS);
-    let jets: Vec<Jet> = evaluated(what, &Displaced::along(around, &designs))?;
+    let jets: Vec<Jet> = evaluated(what, &DisplacedGround::along(around, &designs))?;
     let mut off = 0.0;
     for (lane, design) in designs.iter().enumerate() {
-        let there: Vec<f64> = evaluated(what, &Displaced::by(around, design, 1.0))?;
+        let there: Vec<f64> = evaluated(what, &DisplacedGround::by(around, design, 1.0))?;
         // A mean displacement has one sign only.
         let opposite = modes.mean.is_empty();
-        let back =
-            if opposite { evaluated(what, &Displaced::by(around, design, -1.0))? } else { there.clone() };
+        let back = if opposite {
+            evaluated(what, &DisplacedGround::by(around, design, -1.0))?
+        } else {
+            there.clone()
+        };
         let mut square = 0.0;
         for (((component, jet), there), back) in error.components.iter().zip(&jets).zip(there).zip(back) {
             let exact =
@@ -230,7 +233,10 @@ pub(super) fn moment_components(
 }
 
 /// The components on displaced particles.
-fn evaluated<T: Analytic>(what: &Differentiated, ground: &Displaced<'_, T>) -> Result<Vec<T>, DeriveError> {
+fn evaluated<T: Analytic>(
+    what: &Differentiated,
+    ground: &DisplacedGround<'_, T>,
+) -> Result<Vec<T>, DeriveError> {
     match what {
         Differentiated::Moment(components) => {
             let mut sums = vec![T::nought(); components.len()];

@@ -4,6 +4,7 @@ mod assemble;
 mod expansion;
 mod layout;
 mod markdown;
+mod orders;
 mod printed;
 mod record;
 mod rms;
@@ -17,6 +18,10 @@ pub use expansion::{
 };
 pub use layout::to_json;
 pub use markdown::markdown;
+pub use orders::{
+    ComponentReport, ContributionReport, DisorderReport, DisorderTermReport, MomentOrders, OrdersReport,
+    OrdersRequest, PublishedOrder, orders_report,
+};
 pub use printed::{PrintedError, PrintedVerdict, printed_markdown, printed_verdicts};
 pub use record::*;
 pub use rms::{RmsReport, SampledReport};
