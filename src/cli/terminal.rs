@@ -19,6 +19,7 @@ pub(super) fn table(report: &Report) -> String {
     let widths = [
         width(&|row| row.case.chars().count(), 4),
         width(&|row| row.published.chars().count(), 9),
+        width(&|row| row.derived.chars().count(), 7),
         width(&|row| row.displacement.chars().count(), 11),
         width(&|row| row.dx_over_h.chars().count(), 13),
     ];
@@ -38,29 +39,31 @@ pub(super) fn table(report: &Report) -> String {
     text
 }
 
-fn section_text(text: &mut String, section: &Section, widths: [usize; 4], coloured: bool) {
+fn section_text(text: &mut String, section: &Section, widths: [usize; 5], coloured: bool) {
     let expected = section.expected.filter(|e| *e != section.verdict);
     let expected = expected.map(|e| format!(", expected {e}")).unwrap_or_default();
     let _ = writeln!(text, "{}  ({})", section.statement, section.location);
     let _ = writeln!(text, "  {}{expected}: {}", paint(section.verdict, coloured, 0), section.why);
-    let [case, published, displacement, dx_over_h] = widths;
+    let [case, published, derived, displacement, dx_over_h] = widths;
     let disordered = section.rows.iter().any(|row| !row.displacement.is_empty());
     let titles = if disordered { "d̃, Δ/h" } else { "Δ/h" };
     let _ = writeln!(
         text,
-        "      {:case$}  {:published$}  {:displacement$}  {:dx_over_h$}",
+        "      {:case$}  {:published$}  {:derived$}  {:displacement$}  {:dx_over_h$}",
         "",
         titles,
+        "derived",
         if disordered { "measured d̃ " } else { "" },
         "measured Δ/h"
     );
     for row in &section.rows {
         let _ = writeln!(
             text,
-            "  {} {:case$}  {:published$}  {:displacement$}  {:dx_over_h$}  {}",
+            "  {} {:case$}  {:published$}  {:derived$}  {:displacement$}  {:dx_over_h$}  {}",
             row.dimension,
             row.case,
             row.published,
+            row.derived,
             row.displacement,
             row.dx_over_h,
             paint(row.verdict, coloured, 0)

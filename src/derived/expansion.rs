@@ -188,6 +188,11 @@ impl Expansion {
         self.values(&terms.error, ground, i, order)
     }
 
+    /// C_m.
+    pub(super) fn approximation(&self, order: usize) -> Result<&Expression, DeriveError> {
+        Ok(&self.order(order)?.approximation)
+    }
+
     fn order(&self, order: usize) -> Result<&OrderTerms, DeriveError> {
         let most = self.orders.len().saturating_sub(1);
         self.orders.get(order).ok_or(DeriveError::Order { order, most })

@@ -36,8 +36,8 @@ pub use error::DeriveError;
 pub use expansion::{Expansion, MOST_ORDER, OrderTerms, VanishingTerm};
 pub use finite::finite;
 pub use orders::{
-    Amplitude, ComponentOrder, Contribution, Crossing, Deviation, DisorderOrder, DisorderTerm, Displaced,
-    Envelope, RegularOrder, Source, Term,
+    Amplitude, CoefficientOrder, ComponentOrder, Contribution, Crossing, Deviation, DisorderOrder,
+    DisorderTerm, Displaced, Envelope, RegularOrder, Source, Term,
 };
 pub use rms::{ComponentError, Model, RmsError, Setting, linearised};
 pub use write::{Format, Printed};

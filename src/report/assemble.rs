@@ -1,11 +1,11 @@
 //! From an outcome to the record.
 
 use super::record::*;
-use crate::claim::{Measured, Statement, convergence_power};
+use crate::claim::{Claim, Measured, Statement, convergence_power};
 use crate::derived::{Conservation, Conserved, Expansion, Format};
-use crate::exact::{int, rational_text};
+use crate::exact::{Rational, int, rational_text};
 use crate::language::{Coefficient, Subject};
-use crate::study::{CaseId, JudgedCase, LadderFit, MeasuredColumn, Outcome, Varies};
+use crate::study::{CaseId, DerivedColumn, JudgedCase, LadderFit, MeasuredColumn, Outcome, Varies};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -143,11 +143,35 @@ fn entry(judged: &JudgedCase, margin: f64) -> ClaimEntry {
         statement: claim.text.clone(),
         case: case(&judged.case, &claim.subject),
         published: Some(published),
-        derived: None,
+        derived: judged.derived.as_ref().map(|derived| derived_column(claim, derived)),
         measured,
         margin: (kind != ClaimKind::Zero).then_some(margin),
         verdict: judged.judgement.verdict,
         why: judged.judgement.why.clone(),
+    }
+}
+
+fn derived_column(claim: &Claim, derived: &DerivedColumn) -> Column {
+    let DerivedColumn::Exponents { displacement, dx_over_h, from } = derived else {
+        let zero = Zero { holds: true, by: Some("symmetry".into()), bound: Some(0.0) };
+        return Column { zero: Some(zero), ..Column::default() };
+    };
+    let exact = |exponent: &Rational| Some(Estimate::exact(rational_text(exponent), Source::Derivation));
+    let length = int(i64::from(claim.subject.length_power()));
+    let value = matches!(claim.statement, Statement::Convergence { .. })
+        .then(|| int(1) - &length / (displacement + dx_over_h));
+    let exponents = Exponents {
+        displacement: exact(displacement),
+        h: exact(&(length - displacement)),
+        dx_over_h: exact(dx_over_h),
+        ..Exponents::default()
+    };
+    Column {
+        exponents: Some(exponents),
+        unit: value.is_some().then(|| POWER.into()),
+        value: value.as_ref().and_then(exact),
+        from: Some(from.clone()),
+        ..Column::default()
     }
 }
 

@@ -64,14 +64,15 @@ fn section_text(text: &mut String, section: &Section) {
     if let Some([operator, expansion, conserves]) = &section.operator {
         let _ = writeln!(text, "Expansion of {operator}: `{expansion}`. It conserves: {conserves}.\n");
     }
-    text.push_str("| D | case | published d̃, Δ/h | measured d̃ | measured Δ/h | verdict | why |\n|---|---|---|---|---|---|---|\n");
+    text.push_str("| D | case | published d̃, Δ/h | derived | measured d̃ | measured Δ/h | verdict | why |\n|---|---|---|---|---|---|---|---|\n");
     for row in &section.rows {
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {} | {} | {} | {} |",
             row.dimension,
             row.case,
             row.published,
+            row.derived,
             row.displacement,
             row.dx_over_h,
             row.verdict,

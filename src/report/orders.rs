@@ -255,7 +255,7 @@ fn published(request: &OrdersRequest<'_>, moment: Moment) -> Vec<PublishedOrder>
                 printed: powers.dx_over_h.to_string(),
                 dx_over_h: powers.dx_over_h.at(request.kernel.beta()).into(),
             }),
-            Statement::Zero => None,
+            Statement::Zero | Statement::Convergence { .. } => None,
         })
         .collect()
 }

@@ -161,6 +161,9 @@ pub struct Column {
     /// Ids of the fits behind the numbers.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fits: Vec<String>,
+    /// Of a derived order: what it comes from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<String>,
 }
 
 /// Exponents of a power law by what it is a power of.

@@ -33,6 +33,8 @@ pub struct Row {
     pub case: String,
     /// Published exponents of d̃ and Δ/h, or what else is published.
     pub published: String,
+    /// Derived exponents of d̃ and Δ/h, exact.
+    pub derived: String,
     /// Measured exponent of d̃.
     pub displacement: String,
     /// Measured exponent of Δ/h.
@@ -118,6 +120,16 @@ fn row(entry: &ClaimEntry, shown: &[&str]) -> Row {
                 power(&entry.published).map_or("0".into(), |power| format!("Δ ≪ h^{}", number(&power.value)))
             }
         };
+    let derived =
+        match (exponent(&entry.derived, |e| &e.displacement), exponent(&entry.derived, |e| &e.dx_over_h)) {
+            _ if power(&entry.derived).is_some() => {
+                power(&entry.derived).map(|power| format!("h^{}", number(&power.value))).unwrap_or_default()
+            }
+            (Some(d), Some(x)) if number(&d.value) == "0" => number(&x.value),
+            (Some(d), Some(x)) => format!("{}, {}", number(&d.value), number(&x.value)),
+            _ if entry.derived.is_some() => "0".into(),
+            _ => "–".into(),
+        };
     let zero = entry.measured.as_ref().and_then(|column| column.zero.as_ref());
     let dx_over_h = match (exponent(&entry.measured, |e| &e.dx_over_h), zero) {
         (Some(x), _) => interval(&x),
@@ -137,6 +149,7 @@ fn row(entry: &ClaimEntry, shown: &[&str]) -> Row {
         dimension: format!("{}-D", case.dimension),
         case: parts.join(" "),
         published,
+        derived,
         displacement,
         dx_over_h,
         verdict: entry.verdict,

@@ -1,5 +1,6 @@
 //! From finished tasks to verdicts.
 
+use super::derive::{DerivedColumn, derived};
 use super::ladder::fit_ladder;
 use super::outcome::{CaseId, JudgedCase, LadderFit, MeasuredColumn, Outcome, RolledClaim, Varies};
 use super::plan::{Plan, claims_in};
@@ -14,7 +15,8 @@ use crate::particles::{Disorder, PointGroup};
 
 /// Fits the ladders that the claims need, and judges every claim in every case.
 pub(super) fn judge(scene: &Scene, plan: &Plan, results: &[TaskResult]) -> Outcome {
-    let mut bench = Bench { plan, results, fits: Vec::new(), margin: scene.raw.comparison.margin };
+    let margin = scene.raw.comparison.margin;
+    let mut bench = Bench { plan, results, fits: Vec::new(), margin };
     let mut judged = Vec::new();
     for claim in &scene.claims {
         for CaseGroup { lattice, kernel, rule, disorders } in &scene.cases {
@@ -27,7 +29,9 @@ pub(super) fn judge(scene: &Scene, plan: &Plan, results: &[TaskResult]) -> Outco
             for disorder in disorders {
                 let case = CaseId::new(kernel, lattice, disorder, *rule);
                 let (measured, judgement) = bench.judge_case(claim, &case, vanishes);
-                judged.push(JudgedCase { claim: claim.clone(), case, measured, judgement });
+                let derived = derived(claim, kernel, lattice, disorder, *rule, vanishes);
+                let judgement = with_derived(claim, &case, &measured, derived.as_ref(), judgement, margin);
+                judged.push(JudgedCase { claim: claim.clone(), case, derived, measured, judgement });
             }
         }
     }
@@ -52,6 +56,51 @@ pub(super) fn judge(scene: &Scene, plan: &Plan, results: &[TaskResult]) -> Outco
         samples,
         pairs,
     }
+}
+
+/// The verdict with the derived column beside the measured one: where nothing was measured to decide it, the derived
+/// exponents do; where both are there, the reason says whether they agree.
+fn with_derived(
+    claim: &Claim,
+    case: &CaseId,
+    measured: &MeasuredColumn,
+    derived: Option<&DerivedColumn>,
+    judgement: Judgement,
+    margin: f64,
+) -> Judgement {
+    let Some(DerivedColumn::Exponents { displacement, dx_over_h, from }) = derived else { return judgement };
+    let exact = [displacement, dx_over_h].map(|exponent| Measured::exactly(rational_to_f64(exponent)));
+    let law = derived.map(DerivedColumn::power_law).unwrap_or_default();
+    let alone = match &claim.statement {
+        Statement::Zero => return judgement,
+        Statement::PowerLaw { powers, .. } => {
+            let published = [&powers.displacement, &powers.dx_over_h]
+                .map(|exponent| rational_to_f64(&exponent.at(case.beta)));
+            judge_power_law(published, exact, margin)
+        }
+        Statement::Convergence { rate, .. } => {
+            let published = rational_to_f64(&rate.at(case.beta));
+            judge_convergence(published, exact[0].plus(exact[1]), claim.subject.length_power(), margin)
+        }
+    };
+    let Judgement { verdict, why } = judgement;
+    let why = why.trim_end_matches('.');
+    if verdict == Verdict::Inconclusive {
+        let why = format!("{why}. Judged by the derived {law} ({from}): {}", alone.why);
+        return Judgement { verdict: alone.verdict, why };
+    }
+    let inside = |measured: &Measured, exact: Measured| {
+        (measured.low - margin..=measured.high + margin).contains(&exact.value)
+    };
+    let agree = match measured {
+        MeasuredColumn::Exponents { displacement, dx_over_h, .. } => {
+            inside(displacement, exact[0]) && inside(dx_over_h, exact[1])
+        }
+        MeasuredColumn::Rate { rate, .. } => inside(rate, exact[0].plus(exact[1])),
+        _ => true,
+    };
+    let but = if agree { "" } else { ", which the measured exponents do not reach here" };
+    Judgement { verdict, why: format!("{why}. Derived: {law} ({from}){but}.") }
 }
 
 fn roll(scene: &Scene, claim: &Claim, judged: &[JudgedCase]) -> RolledClaim {

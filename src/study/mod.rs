@@ -4,6 +4,7 @@
 //! sink of events. What a study returns is a pure function of the scene and its stored blocks.
 
 mod define_lattice;
+mod derive;
 mod error;
 mod event;
 mod judge;
@@ -16,6 +17,7 @@ mod source;
 mod store;
 mod tables;
 
+pub use derive::DerivedColumn;
 pub use error::StudyError;
 pub use event::Event;
 pub use outcome::{CaseId, JudgedCase, LadderFit, MeasuredColumn, Outcome, RolledClaim, Rung, Varies};

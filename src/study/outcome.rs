@@ -1,5 +1,6 @@
 //! What a study found.
 
+use super::derive::DerivedColumn;
 use super::plan::Omission;
 use super::scene::Scene;
 use crate::claim::{Claim, Judgement, Measured, Quantity, Verdict};
@@ -159,6 +160,8 @@ pub struct JudgedCase {
     pub claim: Claim,
     /// The case.
     pub case: CaseId,
+    /// What was derived, where it can be.
+    pub derived: Option<DerivedColumn>,
     /// What was measured.
     pub measured: MeasuredColumn,
     /// The verdict.

@@ -24,7 +24,7 @@ use super::tail::Symmetry;
 use crate::derived::DeriveError;
 use crate::exact::{MultiIndex, Rational, int, ratio, rational_text};
 use crate::kernel::{Kernel, SummandTerm};
-use crate::particles::{Disorder, Lattice, Moves};
+use crate::particles::{Disorder, Lattice, Law, Moves};
 use crate::sums::Moment;
 use num_traits::Zero;
 
@@ -57,19 +57,14 @@ pub enum Displaced {
 impl Displaced {
     /// What a model of the catalogue is; `None` for `none`.
     pub fn by(disorder: &Disorder) -> Option<Self> {
-        let options = disorder.model_and_options();
-        let has = |option: &str| options.split(',').any(|part| part == option);
-        match disorder.entry().moves {
-            Moves::Nothing => None,
-            Moves::CentreOnly => Some(Self::Offset),
-            Moves::All => Some(Self::Independent),
-            Moves::Together if disorder.model() == "shear" => {
-                Some(Self::Shear { random: !has("amount=given") })
-            }
-            Moves::Together => {
-                Some(Self::Wave { in_h: !has("unit=dx"), transverse: has("polarisation=transverse") })
-            }
-        }
+        Some(match (disorder.entry().moves, disorder.motion().law) {
+            (Moves::Nothing, _) => return None,
+            (Moves::CentreOnly, _) => Self::Offset,
+            (_, Law::Independent(_)) => Self::Independent,
+            (_, Law::Wave { in_h, transverse, .. }) => Self::Wave { in_h, transverse },
+            (_, Law::Rows) => Self::Shear { random: true },
+            (_, Law::AlternateRows) => Self::Shear { random: false },
+        })
     }
 }
 

@@ -30,7 +30,9 @@
 //! - `oscillation`: sums over shells, their bounds and extremes.
 //! - `regular`, `series`: [`RegularOrder`], its terms and its values.
 //! - `disorder`: [`DisorderOrder`].
+//! - `coefficient`: [`CoefficientOrder`], of operators.
 
+mod coefficient;
 mod disorder;
 mod epstein;
 mod oscillation;
@@ -40,6 +42,7 @@ mod singular;
 mod spheres;
 mod tail;
 
+pub use coefficient::CoefficientOrder;
 pub use disorder::{DisorderOrder, DisorderTerm, Displaced};
 pub use regular::{Amplitude, ComponentOrder, Contribution, RegularOrder, Source, Term};
 pub use series::{Crossing, Deviation, Envelope};
