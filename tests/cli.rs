@@ -23,6 +23,8 @@ mod orders;
 mod plans;
 #[path = "cli/reports.rs"]
 mod reports;
+#[path = "cli/rms.rs"]
+mod rms;
 #[path = "cli/same_bytes.rs"]
 mod same_bytes;
 #[path = "cli/scenes.rs"]

@@ -164,7 +164,24 @@ impl Symbol {
                 chosen.map(|b| 0.5 * self.reciprocal[b][a]).sum()
             })
         };
-        (1..count).map(sum).collect()
+        (1..count).map(|choice| self.shortest(sum(choice))).collect()
+    }
+
+    /// The shortest of all wave vectors that are the same wave on the lattice.
+    fn shortest(&self, k: [f64; 3]) -> [f64; 3] {
+        let steps = |axis: usize| if axis < self.dimension { -3..=3 } else { 0..=0 };
+        let mut best = k;
+        for (a, b, c) in itertools::iproduct!(steps(0), steps(1), steps(2)) {
+            let moved: [f64; 3] = std::array::from_fn(|x| {
+                let along = self.reciprocal.iter().zip([a, b, c]).map(|(g, n)| f64::from(n) * g[x]);
+                k[x] + along.sum::<f64>()
+            });
+            if dot(&moved, &moved) < dot(&best, &best) - 1e-9 {
+                best = moved;
+            }
+        }
+        // Rounding leaves what should be zero.
+        best.map(|x| if x.abs() < 1e-12 { 0.0 } else { x })
     }
 
     /// Whether the wave at k is a null mode: σ vanishes to rounding, and the target's does not.
