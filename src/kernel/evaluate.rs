@@ -29,22 +29,29 @@ pub struct Evaluator<T> {
     order: usize,
 }
 
+/// How G_k is computed.
 #[derive(Debug, Clone)]
-enum Shape<T> {
+pub(crate) enum Shape<T> {
+    /// Polynomials over powers of x, in ascending order of x.
     Pieces(Vec<Piece<T>>),
     /// G_k = factor_k · exp(−rate · x²) for x < 1.
     Gaussian {
+        /// κ².
         rate: f64,
+        /// σ_D κ^D (−2 κ²)^k.
         factors: Vec<T>,
     },
 }
 
+/// G_k for from ≤ x < to.
 #[derive(Debug, Clone)]
-struct Piece<T> {
-    from: T,
-    to: T,
+pub(crate) struct Piece<T> {
+    /// Where it begins.
+    pub(crate) from: T,
+    /// Where it ends: s = to − x.
+    pub(crate) to: T,
     /// For each G_k: descending coefficients in s, and the power n of 1/x.
-    functions: Vec<(Vec<T>, usize)>,
+    pub(crate) functions: Vec<(Vec<T>, usize)>,
 }
 
 impl<T: Float> Evaluator<T> {
@@ -139,6 +146,11 @@ impl<T: Float> Evaluator<T> {
             Shape::Gaussian { .. } => {}
         }
         values
+    }
+
+    /// The formulas behind the values.
+    pub(crate) fn shape(&self) -> &Shape<T> {
+        &self.shape
     }
 
     /// The highest k for which G_k is evaluated.

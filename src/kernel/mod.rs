@@ -24,6 +24,7 @@ pub use convention::{Convention, conventions};
 pub use definition::{KernelDefinition, PieceDefinition};
 pub use error::KernelError;
 pub use evaluate::{Evaluator, RadialValues};
+pub(crate) use evaluate::{LANES, Shape};
 pub use gaussian::gaussian;
 pub use radial::{Jump, Kernel, Printed, Profile, RadialFunction, RadialPiece};
 pub use wendland::{wendland_c2, wendland_c2_1d, wendland_c4, wendland_c4_1d, wendland_c6, wendland_c6_1d};

@@ -80,4 +80,44 @@ pub enum SumError {
         /// R/Δ.
         support_over_dx: f64,
     },
+    /// D is not 1, 2 or 3.
+    #[error("the dimension is {found}; give 1, 2 or 3")]
+    Dimension {
+        /// D as given.
+        found: usize,
+    },
+    /// R cannot be used.
+    #[error("the support radius is {found:e}; it must be positive, finite and within 1e-150 to 1e150")]
+    SupportLength {
+        /// R as given.
+        found: f64,
+    },
+    /// A list without one entry for each particle.
+    #[error("{what}: there are {found} where {expected} are needed")]
+    Length {
+        /// Which list.
+        what: String,
+        /// Its length.
+        found: usize,
+        /// What its length must be.
+        expected: usize,
+    },
+    /// A number that is not finite, or a coordinate that cannot be squared.
+    #[error("particle {particle}: the {what} is {value:e}; remove the particle, or repair the input or its unit")]
+    NotFinite {
+        /// Which number.
+        what: String,
+        /// The particle at fault.
+        particle: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// More particles than can be numbered.
+    #[error("there are {found} particles, more than the {most} that one run takes: analyse a part of them")]
+    TooManyParticles {
+        /// How many were given.
+        found: usize,
+        /// How many one run takes.
+        most: usize,
+    },
 }

@@ -1,0 +1,120 @@
+//! G_k = W′…/r in lanes, times R^{D+2k}, as a function of x = r/R.
+//!
+//! The formulas of [`Evaluator`]: polynomials in s = x_right − x. The powers of s that divide a polynomial are taken out, as
+//! these are most of the polynomials of kernels that join zero smoothly.
+
+use super::lanes::Lanes;
+use crate::kernel::{Evaluator, Kernel, LANES, Shape};
+
+/// The kernel of an engine.
+#[derive(Debug, Clone)]
+pub(super) enum Radial {
+    /// By ascending x.
+    Pieces(Vec<Piece>),
+    /// G_k = factor_k exp(−rate x²).
+    Gaussian { rate: f64, factors: Vec<f64> },
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    from: f64,
+    to: f64,
+    functions: Vec<Function>,
+}
+
+/// s^power × (descending coefficients in s) × x^{−inverse}.
+#[derive(Debug, Clone)]
+struct Function {
+    power: usize,
+    coefficients: Vec<f64>,
+    inverse: usize,
+}
+
+impl Radial {
+    /// G_0 … G_`order`.
+    pub(super) fn new(kernel: &Kernel, dimension: usize, order: usize) -> Self {
+        match Evaluator::<f64>::new(kernel, dimension, order).shape() {
+            Shape::Gaussian { rate, factors } => Self::Gaussian { rate: *rate, factors: factors.clone() },
+            Shape::Pieces(pieces) => {
+                let piece = pieces.iter().map(|piece| Piece {
+                    from: piece.from,
+                    to: piece.to,
+                    functions: piece.functions.iter().map(function).collect(),
+                });
+                Self::Pieces(piece.collect())
+            }
+        }
+    }
+
+    /// Those G_k that are wanted, at 0 ≤ x ≤ 1. At x = 0, G_k is its limit where that is finite and 0 where it is not.
+    #[inline(always)]
+    pub(super) fn evaluate<L: Lanes>(&self, x: L, wanted: &[bool; 3]) -> [L; 3] {
+        let zero = L::splat(0.0);
+        let mut g = [zero; 3];
+        match self {
+            Self::Pieces(pieces) => {
+                let [only] = &pieces[..] else {
+                    for piece in pieces {
+                        let from = L::splat(piece.from);
+                        for k in 0..3 {
+                            if wanted[k] {
+                                // A piece holds from its left end on, until the next one takes over.
+                                g[k] = x.where_below(from, g[k], piece.functions[k].at(piece.to, x));
+                            }
+                        }
+                    }
+                    return g;
+                };
+                for k in 0..3 {
+                    if wanted[k] {
+                        g[k] = only.functions[k].at(only.to, x);
+                    }
+                }
+            }
+            Self::Gaussian { rate, factors } => {
+                let mut values = [0.0; LANES];
+                x.store(&mut values);
+                let exponential = values.map(|x| libm::exp(-rate * x * x));
+                let exponential = L::load(&exponential);
+                for k in 0..3 {
+                    if wanted[k] {
+                        g[k] = L::splat(factors[k]).mul(exponential);
+                    }
+                }
+            }
+        }
+        g
+    }
+}
+
+fn function((coefficients, inverse): &(Vec<f64>, usize)) -> Function {
+    let mut coefficients = coefficients.clone();
+    let length = coefficients.len();
+    while coefficients.len() > 1 && coefficients.last() == Some(&0.0) {
+        coefficients.pop();
+    }
+    Function { power: length - coefficients.len(), coefficients, inverse: *inverse }
+}
+
+impl Function {
+    #[inline(always)]
+    fn at<L: Lanes>(&self, to: f64, x: L) -> L {
+        let s = L::splat(to).sub(x);
+        let mut coefficients = self.coefficients.iter();
+        let mut value = L::splat(coefficients.next().copied().unwrap_or(0.0));
+        for coefficient in coefficients {
+            value = value.mul(s).add(L::splat(*coefficient));
+        }
+        for _ in 0..self.power {
+            value = value.mul(s);
+        }
+        if self.inverse > 0 {
+            let zero = L::splat(0.0);
+            let inverse = zero.where_below(x, L::splat(1.0).div(x), zero);
+            for _ in 0..self.inverse {
+                value = value.mul(inverse);
+            }
+        }
+        value
+    }
+}
