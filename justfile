@@ -25,6 +25,13 @@ bench-sums:
     target/peers/bin/pip install --quiet --requirement benches/peers/requirements.txt
     target/peers/bin/python benches/peers/lattice_sum.py
 
+# The engine and the numba program PEER in turn on the same workload, and the ratio of their medians.
+bench-peers PEER *OPTIONS:
+    cargo build --release --example throughput
+    python3 -m venv target/peers
+    target/peers/bin/pip install --quiet numpy numba
+    python3 benches/peers/engine.py target/peers/bin/python {{ PEER }} {{ OPTIONS }}
+
 # Regenerate the committed reports in place; with NAMES, only these, and new ones too.
 reports *NAMES:
     bash .ci/reports write {{ NAMES }}

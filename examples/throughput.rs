@@ -122,7 +122,9 @@ fn wanted() -> Vec<RadialSum> {
 /// The columns from the sums: S0, S1, …, S4, ∇ and L of the field.
 fn finish<const D: usize>(f: f64, sums: &[f64], row: &mut [f64]) {
     let moments = sums.len() - D - 1;
-    row[..moments].copy_from_slice(&sums[..moments]);
+    for (slot, sum) in row.iter_mut().zip(&sums[..moments]) {
+        *slot = *sum;
+    }
     let (first, second) = (&sums[1..=D], &sums[1 + D..]);
     let (gradient, laplacian) = (&sums[moments..moments + D], sums[moments + D]);
     let mut rest = row[moments..].iter_mut();
@@ -142,11 +144,8 @@ fn finish<const D: usize>(f: f64, sums: &[f64], row: &mut [f64]) {
         let (a, b, c) = (yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
         let over = 1.0 / (xx * a + xy * b + xz * c);
         let lower = [(xx * zz - xz * xz) * over, (xy * xz - xx * yz) * over, (xx * yy - xy * xy) * over];
-        let rows = [
-            [a * over, b * over, c * over],
-            [b * over, lower[0], lower[1]],
-            [c * over, lower[1], lower[2]],
-        ];
+        let rows =
+            [[a * over, b * over, c * over], [b * over, lower[0], lower[1]], [c * over, lower[1], lower[2]]];
         for (own, row) in inverse.iter_mut().zip(rows) {
             own.copy_from_slice(&row[..D]);
         }

@@ -103,7 +103,9 @@ pub enum SumError {
         expected: usize,
     },
     /// A number that is not finite, or a coordinate that cannot be squared.
-    #[error("particle {particle}: the {what} is {value:e}; remove the particle, or repair the input or its unit")]
+    #[error(
+        "particle {particle}: the {what} is {value:e}; remove the particle, or repair the input or its unit"
+    )]
     NotFinite {
         /// Which number.
         what: String,

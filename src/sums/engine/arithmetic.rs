@@ -35,12 +35,16 @@ pub(super) struct Scratch {
     row: Option<usize>,
     ranges: Vec<(u32, u32)>,
     lists: Lists,
-    r: Box<[Values; 3]>,
+    /// r_ij by axis.
+    r: Vec<Values>,
     /// ω G_k.
-    weighted: Box<[Values; 3]>,
+    weighted: Vec<Values>,
     /// ω G_k (f_j − f_i) of one pass.
-    differences: Box<Values>,
+    differences: Vec<[f64; LANES]>,
+    /// f_j − f_i by field.
     fields: Vec<Values>,
+    /// f_i by field.
+    own_fields: Vec<[f64; LANES]>,
     pub(super) sums: Vec<[f64; LANES]>,
     /// Neighbours seen, i itself included.
     pub(super) pairs: u64,
@@ -54,10 +58,11 @@ impl Scratch {
             row: None,
             ranges: Vec::new(),
             lists: Lists::default(),
-            r: Box::new([values; 3]),
-            weighted: Box::new([values; 3]),
-            differences: Box::new(values),
+            r: vec![values; 3],
+            weighted: vec![values; 3],
+            differences: vec![[0.0; LANES]; TILE],
             fields: vec![values; plan.fields],
+            own_fields: vec![[0.0; LANES]; plan.fields],
             sums: vec![[0.0; LANES]; plan.sums],
             pairs: 0,
         }
@@ -66,7 +71,12 @@ impl Scratch {
 
 /// The sums of the particles at places `first` … `first + count − 1`, count ≤ 8, into the lanes of `scratch.sums`.
 #[inline(always)]
-pub(super) fn eight<L: Lanes, const D: usize>(task: &Task<'_>, first: usize, count: usize, scratch: &mut Scratch) {
+pub(super) fn eight<L: Lanes, const D: usize>(
+    task: &Task<'_>,
+    first: usize,
+    count: usize,
+    scratch: &mut Scratch,
+) {
     let lengths = list_neighbours::<L, D>(task, first, count, scratch);
     let longest = lengths.iter().copied().max().unwrap_or(0);
     scratch.sums.fill([0.0; LANES]);
@@ -76,13 +86,13 @@ pub(super) fn eight<L: Lanes, const D: usize>(task: &Task<'_>, first: usize, cou
         evaluate::<L, D>(task, first, count, &lengths, from, steps, scratch);
         for pass in &task.plan.passes {
             let g = match pass.factor {
-                Factor::One => &scratch.weighted[pass.radial],
+                Factor::One => &scratch.weighted[pass.radial][..],
                 Factor::Difference(field) => {
                     let (g, f) = (&scratch.weighted[pass.radial], &scratch.fields[field]);
                     for step in 0..steps {
                         L::load(&g[step]).mul(L::load(&f[step])).store(&mut scratch.differences[step]);
                     }
-                    &scratch.differences
+                    &scratch.differences[..]
                 }
             };
             take::<L, D>(pass, &scratch.r, g, steps, &mut scratch.sums);
@@ -106,7 +116,9 @@ fn list_neighbours<L: Lanes, const D: usize>(
     for (lane, length) in lengths.iter_mut().enumerate().take(count) {
         let place = first + lane;
         let row = match scratch.row {
-            Some(row) if (place as u32) < sorted.rows[row].end && place as u32 >= sorted.rows[row].first => row,
+            Some(row) if (place as u32) < sorted.rows[row].end && place as u32 >= sorted.rows[row].first => {
+                row
+            }
             _ => {
                 let row = sorted.row_at(place);
                 scratch.reach.aim(sorted, row, D);
@@ -175,6 +187,9 @@ fn evaluate<L: Lanes, const D: usize>(
     let inverse_support = L::splat(1.0 / task.support);
     let axes: [&[f64]; D] = std::array::from_fn(|a| &sorted.columns[a][..]);
     let weights = &sorted.columns[D][..];
+    for (field, values) in scratch.own_fields.iter_mut().enumerate() {
+        of_own(D + 1 + field).store(values);
+    }
     for step in 0..steps {
         let index = L::entries(&scratch.lists, from + step);
         let position = L::gather(axes, index);
@@ -196,7 +211,7 @@ fn evaluate<L: Lanes, const D: usize>(
         }
         for (field, values) in scratch.fields.iter_mut().enumerate() {
             let [f] = L::gather([&sorted.columns[D + 1 + field][..]], index);
-            f.sub(of_own(D + 1 + field)).store(&mut values[step]);
+            f.sub(L::load(&scratch.own_fields[field])).store(&mut values[step]);
         }
     }
 }
@@ -205,8 +220,8 @@ fn evaluate<L: Lanes, const D: usize>(
 #[inline(always)]
 fn take<L: Lanes, const D: usize>(
     pass: &Pass,
-    r: &[Values; 3],
-    g: &Values,
+    r: &[Values],
+    g: &[[f64; LANES]],
     steps: usize,
     sums: &mut [[f64; LANES]],
 ) {
@@ -227,8 +242,8 @@ fn take<L: Lanes, const D: usize>(
 #[inline(always)]
 fn up_to<L: Lanes, const D: usize, const HIGHEST: usize>(
     degrees: u16,
-    r: &[Values; 3],
-    g: &Values,
+    r: &[Values],
+    g: &[[f64; LANES]],
     steps: usize,
     sums: &mut [[f64; LANES]],
 ) {

@@ -9,6 +9,8 @@ use crate::kernel::{Evaluator, Kernel, LANES, Shape};
 /// The kernel of an engine.
 #[derive(Debug, Clone)]
 pub(super) enum Radial {
+    /// One polynomial for each G_k: apart, as a division in sight is carried out even where no power of x divides.
+    Smooth { to: f64, functions: Vec<Function> },
     /// By ascending x.
     Pieces(Vec<Piece>),
     /// G_k = factor_k exp(−rate x²).
@@ -24,7 +26,7 @@ pub(super) struct Piece {
 
 /// s^power × (descending coefficients in s) × x^{−inverse}.
 #[derive(Debug, Clone)]
-struct Function {
+pub(super) struct Function {
     power: usize,
     coefficients: Vec<f64>,
     inverse: usize,
@@ -41,7 +43,13 @@ impl Radial {
                     to: piece.to,
                     functions: piece.functions.iter().map(function).collect(),
                 });
-                Self::Pieces(piece.collect())
+                let mut pieces: Vec<Piece> = piece.collect();
+                match &mut pieces[..] {
+                    [only] if only.functions.iter().all(|function| function.inverse == 0) => {
+                        Self::Smooth { to: only.to, functions: std::mem::take(&mut only.functions) }
+                    }
+                    _ => Self::Pieces(pieces),
+                }
             }
         }
     }
@@ -52,22 +60,21 @@ impl Radial {
         let zero = L::splat(0.0);
         let mut g = [zero; 3];
         match self {
-            Self::Pieces(pieces) => {
-                let [only] = &pieces[..] else {
-                    for piece in pieces {
-                        let from = L::splat(piece.from);
-                        for k in 0..3 {
-                            if wanted[k] {
-                                // A piece holds from its left end on, until the next one takes over.
-                                g[k] = x.where_below(from, g[k], piece.functions[k].at(piece.to, x));
-                            }
-                        }
-                    }
-                    return g;
-                };
+            Self::Smooth { to, functions } => {
                 for k in 0..3 {
                     if wanted[k] {
-                        g[k] = only.functions[k].at(only.to, x);
+                        g[k] = functions[k].polynomial(*to, x);
+                    }
+                }
+            }
+            Self::Pieces(pieces) => {
+                for piece in pieces {
+                    let from = L::splat(piece.from);
+                    for k in 0..3 {
+                        if wanted[k] {
+                            // A piece holds from its left end on, until the next one takes over.
+                            g[k] = x.where_below(from, g[k], piece.functions[k].at(piece.to, x));
+                        }
                     }
                 }
             }
@@ -98,7 +105,7 @@ fn function((coefficients, inverse): &(Vec<f64>, usize)) -> Function {
 
 impl Function {
     #[inline(always)]
-    fn at<L: Lanes>(&self, to: f64, x: L) -> L {
+    fn polynomial<L: Lanes>(&self, to: f64, x: L) -> L {
         let s = L::splat(to).sub(x);
         let mut coefficients = self.coefficients.iter();
         let mut value = L::splat(coefficients.next().copied().unwrap_or(0.0));
@@ -108,6 +115,12 @@ impl Function {
         for _ in 0..self.power {
             value = value.mul(s);
         }
+        value
+    }
+
+    #[inline(always)]
+    fn at<L: Lanes>(&self, to: f64, x: L) -> L {
+        let mut value = self.polynomial(to, x);
         if self.inverse > 0 {
             let zero = L::splat(0.0);
             let inverse = zero.where_below(x, L::splat(1.0).div(x), zero);

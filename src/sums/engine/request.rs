@@ -111,7 +111,9 @@ impl Plan {
                 return Err(SumError::Moment { what: format!("r^{p} G_{k}") });
             }
             let all = 0..monomials(dimension, p);
-            terms.extend(all.map(|place| vec![(1.0, Product { radial: k, factor: sum.factor, degree: p, place })]));
+            terms.extend(
+                all.map(|place| vec![(1.0, Product { radial: k, factor: sum.factor, degree: p, place })]),
+            );
         }
         Ok(Self::new(dimension, &terms, unit))
     }

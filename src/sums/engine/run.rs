@@ -162,9 +162,10 @@ impl Engine {
         let (sorted, plan) = (&self.sorted, &self.plan);
         let task = Task { sorted, plan, radial: &self.radial, support: self.support };
         let pairs = AtomicU64::new(0);
-        let start = || (Scratch::new(plan), vec![[0.0; LANES]; plan.columns.len()], vec![0.0; plan.columns.len()]);
+        let start =
+            || (Scratch::new(plan), vec![[0.0; LANES]; plan.columns.len()], vec![0.0; plan.columns.len()]);
         write_rows(&sorted.order, out, width, STRETCH, start, |(scratch, lanes, sums), places, rows| {
-            block::<D, _>(self.path, &task, places, scratch, |first, count, scratch| {
+            block::<D>(self.path, &task, places, scratch, &mut |first, count, scratch| {
                 for (lanes, terms) in lanes.iter_mut().zip(&plan.columns) {
                     // From +0, so that −0 is never a result: which of both a sum of zeros gives would depend on its list.
                     *lanes = [0.0; LANES];
@@ -202,16 +203,15 @@ impl Engine {
             return length("fields", points.fields.len(), self.plan.fields);
         }
         let out_of_range = |x: f64| x.is_nan() || x.abs() > LENGTH_LIMIT;
-        let bad = points.positions.par_iter().position_first(|x| x[..self.dimension].iter().any(|x| out_of_range(*x)));
-        if let Some(particle) = bad {
+        let bad = |x: &[f64; 3]| x[..self.dimension].iter().fold(false, |bad, x| bad | out_of_range(*x));
+        if let Some(particle) = first(points.positions, bad) {
             let place = points.positions[particle];
             let axis = (0..self.dimension).find(|axis| out_of_range(place[*axis])).unwrap_or(0);
             let what = format!("{} coordinate", ["x", "y", "z"][axis]);
             return Err(SumError::NotFinite { what, particle, value: place[axis] });
         }
         let finite = |what: &dyn Fn() -> String, values: &[f64]| {
-            let bad = values.par_iter().position_first(|value| !value.is_finite());
-            bad.map_or(Ok(()), |particle| {
+            first(values, |value| !value.is_finite()).map_or(Ok(()), |particle| {
                 Err(SumError::NotFinite { what: what(), particle, value: values[particle] })
             })
         };
@@ -222,6 +222,15 @@ impl Engine {
         }
         Ok(())
     }
+}
+
+/// The first value that is bad, which hardly ever is there: whole chunks are tested at a time.
+fn first<T: Sync>(values: &[T], bad: impl Fn(&T) -> bool + Sync + Send) -> Option<usize> {
+    const CHUNK: usize = 4096;
+    let chunk =
+        values.par_chunks(CHUNK).position_first(|chunk| chunk.iter().fold(false, |any, x| any | bad(x)))?;
+    let within = values[chunk * CHUNK..].iter().position(bad)?;
+    Some(chunk * CHUNK + within)
 }
 
 fn check(dimension: usize, support: f64) -> Result<(), SumError> {

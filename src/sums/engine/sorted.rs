@@ -66,18 +66,19 @@ impl Row {
 /// Where cells are.
 struct Grid {
     origin: [f64; 2],
+    /// The highest coordinates across the rows.
+    high: [f64; 3],
     inverse_edge: f64,
 }
 
 impl Grid {
     fn new(points: &Points<'_>, dimension: usize, support: f64) -> Self {
         let inverse_edge = f64::from(CELLS) / support / MARGIN;
-        let mut origin = [0.0; 2];
+        let (mut origin, mut high) = ([0.0; 2], [0.0; 3]);
         for (axis, origin) in origin.iter_mut().enumerate().take(dimension - 1) {
-            let coordinate = points.positions.par_iter().map(|x| x[axis]);
-            let low = coordinate.clone().reduce(|| f64::INFINITY, f64::min);
-            let high = coordinate.reduce(|| f64::NEG_INFINITY, f64::max);
-            *origin = low;
+            let (low, most) = bounds(points.positions, axis);
+            (*origin, high[axis]) = (low, most);
+            let high = most;
             if (high - low) * inverse_edge >= MOST_CELLS {
                 // Half the cells on either side of the middle particle, whatever the outliers.
                 let mut all: Vec<f64> = points.positions.iter().map(|x| x[axis]).collect();
@@ -86,18 +87,28 @@ impl Grid {
                 *origin = middle - 0.5 * MOST_CELLS / inverse_edge;
             }
         }
-        Self { origin, inverse_edge }
+        Self { origin, high, inverse_edge }
     }
 
     fn key(&self, position: &[f64; 3], dimension: usize) -> (u32, u32) {
         // A cast saturates: what lies below the first cell is in the first.
-        let cell = |axis: usize| ((position[axis] - self.origin[axis]) * self.inverse_edge).min(MOST_CELLS) as u32;
+        let cell =
+            |axis: usize| ((position[axis] - self.origin[axis]) * self.inverse_edge).min(MOST_CELLS) as u32;
         match dimension {
             1 => (0, 0),
             2 => (0, cell(0)),
             _ => (cell(0), cell(1)),
         }
     }
+}
+
+/// The lowest and the highest coordinate.
+fn bounds(positions: &[[f64; 3]], axis: usize) -> (f64, f64) {
+    let none = (f64::INFINITY, f64::NEG_INFINITY);
+    let of = |positions: &[[f64; 3]]| {
+        positions.iter().fold(none, |(low, high), x| (low.min(x[axis]), high.max(x[axis])))
+    };
+    positions.par_chunks(TASK).map(of).reduce(|| none, |p, q| (p.0.min(q.0), p.1.max(q.1)))
 }
 
 impl Sorted {
@@ -162,7 +173,7 @@ impl Sorted {
 fn number_rows(grid: &Grid, points: &Points<'_>, dimension: usize) -> (Vec<(u32, u32)>, Vec<u32>) {
     let positions = points.positions;
     let key = |x: &[f64; 3]| grid.key(x, dimension);
-    let most = positions.par_iter().map(key).reduce(|| (0, 0), |p, q| (p.0.max(q.0), p.1.max(q.1)));
+    let most = grid.key(&grid.high, dimension);
     let width = u64::from(most.1) + 1;
     let cells = (u64::from(most.0) + 1).saturating_mul(width);
     if cells > 2 * positions.len() as u64 + 1024 {
@@ -259,11 +270,9 @@ impl Slots<'_> {
         let (left_starts, right_starts) = self.starts.split_at_mut(2 * particles + half);
         let (left_rows, right_rows) = self.rows.split_at_mut(half);
         let left = Slots { columns: left_columns, order: left_order, starts: left_starts, rows: left_rows };
-        let right = Slots { columns: right_columns, order: right_order, starts: right_starts, rows: right_rows };
-        rayon::join(
-            || left.fill(points, dimension, scattered),
-            || right.fill(points, dimension, scattered),
-        );
+        let right =
+            Slots { columns: right_columns, order: right_order, starts: right_starts, rows: right_rows };
+        rayon::join(|| left.fill(points, dimension, scattered), || right.fill(points, dimension, scattered));
     }
 
     fn fill_here(mut self, points: &Points<'_>, dimension: usize, scattered: &[AtomicU32]) {

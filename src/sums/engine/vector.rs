@@ -56,30 +56,30 @@ impl Path {
 
 /// Evaluates the particles at `places`, eight at a time; `done` gets the first place and how many, and finds their sums in
 /// the scratch.
-pub(super) fn block<const D: usize, F: FnMut(usize, usize, &mut Scratch)>(
+pub(super) fn block<const D: usize>(
     path: Path,
     task: &Task<'_>,
     places: Range<usize>,
     scratch: &mut Scratch,
-    done: F,
+    done: &mut dyn FnMut(usize, usize, &mut Scratch),
 ) {
     match path {
         // SAFETY: the machine has the features that the function enables, as was just asked.
         #[cfg(target_arch = "x86_64")]
-        Path::Avx512 if path.is_available() => unsafe { block_avx512::<D, F>(task, places, scratch, done) },
+        Path::Avx512 if path.is_available() => unsafe { block_avx512::<D>(task, places, scratch, done) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        Path::Avx2 if path.is_available() => unsafe { block_avx2::<D, F>(task, places, scratch, done) },
-        _ => block_of::<Portable, D, F>(task, places, scratch, done),
+        Path::Avx2 if path.is_available() => unsafe { block_avx2::<D>(task, places, scratch, done) },
+        _ => block_of::<Portable, D>(task, places, scratch, done),
     }
 }
 
 #[inline(always)]
-fn block_of<L: Lanes, const D: usize, F: FnMut(usize, usize, &mut Scratch)>(
+fn block_of<L: Lanes, const D: usize>(
     task: &Task<'_>,
     places: Range<usize>,
     scratch: &mut Scratch,
-    mut done: F,
+    done: &mut dyn FnMut(usize, usize, &mut Scratch),
 ) {
     for first in places.clone().step_by(LANES) {
         let count = LANES.min(places.end - first);
@@ -111,13 +111,15 @@ pub(super) fn write_rows<S, I, W>(
     }
     drop(seen);
     let base = Shared(out.as_mut_ptr());
-    (0..order.len().div_ceil(stretch)).into_par_iter().for_each_init(start, |state, index| {
-        let places = index * stretch..order.len().min((index + 1) * stretch);
-        let base = &base;
-        let mut rows = RowsAt { order: &order[places.clone()], first: places.start, base: base.0, width };
-        rows.order = &order[places.clone()];
-        write(state, places, &mut rows);
-    });
+    (0..order.len().div_ceil(stretch)).into_par_iter().with_min_len(4).for_each_init(
+        start,
+        |state, index| {
+            let places = index * stretch..order.len().min((index + 1) * stretch);
+            let base = &base;
+            let mut rows = RowsAt { order: &order[places.clone()], first: places.start, base: base.0, width };
+            write(state, places, &mut rows);
+        },
+    );
 }
 
 struct Shared(*mut f64);
@@ -154,23 +156,23 @@ mod x86 {
     use std::arch::x86_64::*;
 
     #[target_feature(enable = "avx512f,avx512vl,popcnt")]
-    pub(in super::super) fn block_avx512<const D: usize, F: FnMut(usize, usize, &mut Scratch)>(
+    pub(in super::super) fn block_avx512<const D: usize>(
         task: &Task<'_>,
         places: Range<usize>,
         scratch: &mut Scratch,
-        done: F,
+        done: &mut dyn FnMut(usize, usize, &mut Scratch),
     ) {
-        block_of::<Wide, D, F>(task, places, scratch, done);
+        block_of::<Wide, D>(task, places, scratch, done);
     }
 
     #[target_feature(enable = "avx2,popcnt")]
-    pub(in super::super) fn block_avx2<const D: usize, F: FnMut(usize, usize, &mut Scratch)>(
+    pub(in super::super) fn block_avx2<const D: usize>(
         task: &Task<'_>,
         places: Range<usize>,
         scratch: &mut Scratch,
-        done: F,
+        done: &mut dyn FnMut(usize, usize, &mut Scratch),
     ) {
-        block_of::<Pair, D, F>(task, places, scratch, done);
+        block_of::<Pair, D>(task, places, scratch, done);
     }
 
     /// Eight lanes in one register.
