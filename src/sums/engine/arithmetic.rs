@@ -1,5 +1,7 @@
 //! Eight particles at a time, each in its lane: their neighbours, the kernel, the sums.
 
+#![allow(clippy::needless_range_loop)] // Axes, lanes and orders index several arrays at once.
+
 use super::lanes::{Lanes, Lists};
 use super::radial::Radial;
 use super::reach::Reach;

@@ -3,6 +3,8 @@
 //! Every operation is correctly rounded by itself and acts on each lane alone, so that every implementation gives the same
 //! bits. Nothing here adds across lanes.
 
+#![allow(clippy::needless_range_loop)] // Axes, lanes and orders index several arrays at once.
+
 use crate::kernel::LANES;
 
 /// The neighbours of eight particles: lane l has its list at `l * stride`.
@@ -135,7 +137,11 @@ impl Lanes for Portable {
 
     #[inline(always)]
     fn gather<const C: usize>(arrays: [&[f64]; C], index: Self::Index) -> [Self; C] {
-        arrays.map(|array| each(|l| array[index[l] as usize]))
+        let mut values = [Self::splat(0.0); C];
+        for (value, array) in values.iter_mut().zip(&arrays) {
+            *value = each(|l| array[index[l] as usize]);
+        }
+        values
     }
 
     #[inline(always)]

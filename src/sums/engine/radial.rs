@@ -3,6 +3,8 @@
 //! The formulas of [`Evaluator`]: polynomials in s = x_right − x. The powers of s that divide a polynomial are taken out, as
 //! these are most of the polynomials of kernels that join zero smoothly.
 
+#![allow(clippy::needless_range_loop)] // Axes, lanes and orders index several arrays at once.
+
 use super::lanes::Lanes;
 use crate::kernel::{Evaluator, Kernel, LANES, Shape};
 

@@ -3,6 +3,8 @@
 //! A ball cuts a row in a chord. Its ends are found for eight rows at a time, from where the particles of each row really
 //! are; the table of columns says which places lie between. What is found may hold more than the ball, never less.
 
+#![allow(clippy::needless_range_loop)] // Axes, lanes and orders index several arrays at once.
+
 use super::lanes::Lanes;
 use super::sorted::Sorted;
 use crate::kernel::LANES;

@@ -9,6 +9,7 @@
 //!
 //! Only correctly rounded operations on single lanes are used: none is fused, none adds across lanes.
 
+#![allow(clippy::needless_range_loop)] // Axes, lanes and orders index several arrays at once.
 #![allow(unsafe_code)]
 
 use super::arithmetic::{Scratch, Task, eight};
@@ -285,7 +286,11 @@ mod x86 {
             wide!({
                 let inside = _mm256_cmplt_epu32_mask(index, _mm256_set1_epi32(length));
                 assert!(inside == 0xff, "a place outside its array");
-                arrays.map(|array| Self(_mm512_i32gather_pd::<8>(index, array.as_ptr().cast())))
+                let mut values = [Self(_mm512_setzero_pd()); C];
+                for (value, array) in values.iter_mut().zip(&arrays) {
+                    *value = Self(_mm512_i32gather_pd::<8>(index, array.as_ptr().cast()));
+                }
+                values
             })
         }
 
@@ -443,10 +448,12 @@ mod x86 {
                 let inside = _mm256_cmpeq_epi32(_mm256_min_epu32(index, last), index);
                 assert!(length > 0 && _mm256_movemask_epi8(inside) == -1, "a place outside its array");
                 let (low, high) = (_mm256_castsi256_si128(index), _mm256_extracti128_si256::<1>(index));
-                arrays.map(|array| {
+                let mut values = [Self(_mm256_setzero_pd(), _mm256_setzero_pd()); C];
+                for (value, array) in values.iter_mut().zip(&arrays) {
                     let base = array.as_ptr();
-                    Self(_mm256_i32gather_pd::<8>(base, low), _mm256_i32gather_pd::<8>(base, high))
-                })
+                    *value = Self(_mm256_i32gather_pd::<8>(base, low), _mm256_i32gather_pd::<8>(base, high));
+                }
+                values
             })
         }
 
