@@ -116,7 +116,6 @@ fn all_moments_of_all_kernels_are_those_of_a_plain_loop() {
 
 #[test]
 fn paths_threads_and_order_change_no_bit() {
-    // Planted: a fused multiply-add in one path; particles of a column left in the order given.
     for dimension in 1..=3 {
         let cloud = cloud(dimension, 2000, 8.0, 17);
         for id in ["wendland-c2", "cubic-spline", "gaussian"] {
