@@ -224,6 +224,38 @@ fn turned_displacements_turn_the_error() {
     assert!(squares(&f2).iter().all(|s| (s / squares(&f2)[0] - 1.0).abs() < 1e-12), "{f2:?}");
 }
 
+/// The square lattice turned by an eighth and √2 coarser: all errors turn and scale with it. Only what no direction enters is
+/// compared: norms of moments, and what an operator makes of u = 1, or of u = x where the law has no direction.
+#[test]
+fn turning_the_lattice_and_scaling_all_lengths_changes_nothing_but_units() {
+    let root = std::f64::consts::SQRT_2;
+    let zero = [0; 3];
+    let turned = |eta: f64| {
+        let mut case = Case::new("wendland-c4", "square", 2.9 * root, &format!("canonical:{}", eta * root));
+        let vectors = [[1, 1, 0], [1, -1, 0], zero];
+        let one = || remainder::exact::int(1);
+        case.lattice =
+            Lattice::new("turned", "turned square", 2, [one(), one(), one()], vectors, vec![zero]).unwrap();
+        case
+    };
+    let square = |eta: f64| Case::new("wendland-c4", "square", 2.9, &format!("canonical:{eta}"));
+    for name in ["sum_w", "sum_dw", "b_inverse", "sum_rddw"] {
+        let length = Moment::by_name(name).unwrap().length_power();
+        let (one, other) = (square(0.1).finite(name), turned(0.1).finite(name));
+        let ratio = other.rms() / (one.rms() * root.powi(length));
+        assert!((ratio - 1.0).abs() < 1e-8, "{name}: {ratio}");
+    }
+    for rule in [VolumeRule::Constant, VolumeRule::NumberDensity] {
+        for (name, order) in [("F1", 0), ("S2-10", 0), ("S3", 1)] {
+            let subject = operator(name, order);
+            let (one, other) =
+                (square(0.02).with(rule).linearised(&subject), turned(0.02).with(rule).linearised(&subject));
+            let ratio = other.rms() / (one.rms() * root.powi(subject.length_power()));
+            assert!((ratio - 1.0).abs() < 1e-11, "{name}: {ratio}");
+        }
+    }
+}
+
 /// Where J vanishes by symmetry the disorder's part is of second order: a rigid offset and an even moment.
 #[test]
 fn a_rigid_offset_moves_even_moments_by_the_square() {

@@ -4,7 +4,8 @@ use super::arguments::KernelArguments;
 use super::execute::print_out;
 use super::exit::{Exit, Failure};
 use crate::kernel::{self, Audit, Kernel};
-use crate::study::read_kernel;
+use crate::particles::{Lattice, lattice_among};
+use crate::study::{read_definitions, read_kernel};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -28,6 +29,18 @@ pub(super) fn named(name: &str, own: &[Kernel]) -> Result<Kernel, Failure> {
         return Ok(read_kernel(path)?);
     }
     kernel::by_id_among(name, own).map_err(|error| Failure::Arguments(error.to_string()))
+}
+
+/// A kernel and a lattice by name, those that a scene defines among them.
+pub(super) fn kernel_on(
+    kernel: &str,
+    lattice: &str,
+    scene: Option<&Path>,
+) -> Result<(Kernel, Lattice), Failure> {
+    let (kernels, lattices) = scene.map(read_definitions).transpose()?.unwrap_or_default();
+    let kernel = named(kernel, &kernels)?;
+    let lattice = lattice_among(lattice, &lattices).map_err(|error| Failure::Arguments(error.to_string()))?;
+    Ok((kernel, lattice))
 }
 
 fn text(audit: &Audit) -> String {

@@ -4,12 +4,11 @@ use super::arguments::OrdersArguments;
 use super::execute::print_out;
 use super::exit::{Exit, Failure};
 use super::kernel::named;
-use super::sums::USUAL;
+use super::sums::moments_named;
 use crate::derived::Displaced;
 use crate::exact::parse_rational;
 use crate::particles::{Disorder, Lattice, disorder, lattice, lattice_by_id};
 use crate::report::{OrdersRequest, orders_report, to_json};
-use crate::sums::Moment;
 
 /// The lattice of a dimension when none is named.
 const LATTICES: [&str; 3] = ["line", "square", "simple-cubic"];
@@ -25,15 +24,7 @@ pub(super) fn orders(arguments: &OrdersArguments) -> Result<Exit, Failure> {
     let fault = |error: &dyn std::fmt::Display| Failure::Arguments(error.to_string());
     let kernel = named(&arguments.kernel, &[])?;
     let lattice = chosen_lattice(arguments)?;
-    let names: Vec<&str> = match arguments.moments.as_slice() {
-        [] => USUAL.to_vec(),
-        named => named.iter().map(String::as_str).collect(),
-    };
-    let moments: Vec<Moment> = names
-        .iter()
-        .map(|name| Moment::by_name(name))
-        .collect::<Result<_, _>>()
-        .map_err(|error| fault(&error))?;
+    let moments = moments_named(&arguments.moments)?;
     let (from, to) = (arguments.from, arguments.to);
     if !(from > 0.0 && from < to && to <= FARTHEST) {
         return Err(Failure::Arguments(format!(

@@ -3,14 +3,13 @@
 use super::arguments::{RmsArguments, RmsModel};
 use super::execute::print_out;
 use super::exit::{Exit, Failure};
-use super::kernel::named;
+use super::kernel::kernel_on;
 use crate::derived::{DeriveError, Setting, finite, linearised};
 use crate::exact::{parse_rational, rational_to_f64};
 use crate::language::{Coefficient, Subject};
 use crate::measured::{SampleSpec, sampled_error};
-use crate::particles::{Disorder, VolumeRule, lattice_among};
+use crate::particles::{Disorder, VolumeRule};
 use crate::report::{RmsReport, to_json};
-use crate::study::read_definitions;
 use crate::sums::Moment;
 
 /// R/Δ that may be asked for: beyond it there are more neighbours than any simulation has.
@@ -18,10 +17,7 @@ const LARGEST_SUPPORT: f64 = 64.0;
 
 pub(super) fn rms(arguments: &RmsArguments) -> Result<Exit, Failure> {
     let fault = |error: &dyn std::fmt::Display| Failure::Arguments(error.to_string());
-    let (own_kernels, own_lattices) =
-        arguments.define.as_deref().map(read_definitions).transpose()?.unwrap_or_default();
-    let kernel = named(&arguments.kernel, &own_kernels)?;
-    let lattice = lattice_among(&arguments.lattice, &own_lattices).map_err(|error| fault(&error))?;
+    let (kernel, lattice) = kernel_on(&arguments.kernel, &arguments.lattice, arguments.define.as_deref())?;
     let rule = VolumeRule::by_id(&arguments.volume_rule).map_err(|error| fault(&error))?;
     let support_over_dx = support_of(&arguments.support_over_dx)?;
     let disorder = Disorder::parse(&arguments.disorder).map_err(|error| fault(&error))?;

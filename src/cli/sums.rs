@@ -3,16 +3,14 @@
 use super::arguments::SumsArguments;
 use super::execute::print_out;
 use super::exit::{Exit, Failure};
-use super::kernel::named;
+use super::kernel::kernel_on;
 use crate::exact::{Enclosure, Rational, Truth, parse_rational, rational_text};
-use crate::particles::{PointGroup, VolumeRule, lattice_among};
-use crate::study::read_definitions;
+use crate::particles::{PointGroup, VolumeRule};
 use crate::sums::{Component, LatticeSums, Moment, Reduction, Standing, SumError, SupportCount};
 use serde_json::{Value, json};
 
 /// What is summed when no moment is named.
-pub(super) const USUAL: [&str; 7] =
-    ["sum_w", "sum_dw", "b_inverse", "sum_rrdw", "sum_rrrdw", "sum_ddw", "sum_rddw"];
+const USUAL: [&str; 7] = ["sum_w", "sum_dw", "b_inverse", "sum_rrdw", "sum_rrrdw", "sum_ddw", "sum_rddw"];
 
 /// Decimal digits that may be asked for; each costs time, and past this it is a slip of the finger.
 const MOST_DIGITS: u32 = 100_000;
@@ -29,10 +27,7 @@ struct Line {
 
 pub(super) fn sums(arguments: &SumsArguments) -> Result<Exit, Failure> {
     let fault = |error: &dyn std::fmt::Display| Failure::Arguments(error.to_string());
-    let (own_kernels, own_lattices) =
-        arguments.define.as_deref().map(read_definitions).transpose()?.unwrap_or_default();
-    let kernel = named(&arguments.kernel, &own_kernels)?;
-    let lattice = lattice_among(&arguments.lattice, &own_lattices).map_err(|error| fault(&error))?;
+    let (kernel, lattice) = kernel_on(&arguments.kernel, &arguments.lattice, arguments.define.as_deref())?;
     let rule = VolumeRule::by_id(&arguments.volume_rule).map_err(|error| fault(&error))?;
     let support = parse_rational(&arguments.support_over_dx).map_err(|error| fault(&error))?;
     if arguments.digits > MOST_DIGITS {
@@ -41,15 +36,7 @@ pub(super) fn sums(arguments: &SumsArguments) -> Result<Exit, Failure> {
             arguments.digits
         )));
     }
-    let names: Vec<&str> = match arguments.moments.as_slice() {
-        [] => USUAL.to_vec(),
-        named => named.iter().map(String::as_str).collect(),
-    };
-    let moments: Vec<Moment> = names
-        .iter()
-        .map(|name| Moment::by_name(name))
-        .collect::<Result<_, _>>()
-        .map_err(|error| fault(&error))?;
+    let moments = moments_named(&arguments.moments)?;
     let group = PointGroup::of(&lattice);
     let sums = LatticeSums::new(&kernel, &lattice, &support, &moments, arguments.memory_mib)
         .map_err(|error| fault(&error))?;
@@ -66,6 +53,16 @@ pub(super) fn sums(arguments: &SumsArguments) -> Result<Exit, Failure> {
         print_out(&as_text(&lines, count, &support, arguments));
     }
     Ok(Exit::AsExpected)
+}
+
+/// The moments of these names, or those that are usual.
+pub(super) fn moments_named(names: &[String]) -> Result<Vec<Moment>, Failure> {
+    let names: Vec<&str> = match names {
+        [] => USUAL.to_vec(),
+        named => named.iter().map(String::as_str).collect(),
+    };
+    let moments: Result<_, _> = names.iter().map(|name| Moment::by_name(name)).collect();
+    moments.map_err(|error| Failure::Arguments(error.to_string()))
 }
 
 /// Every component of a moment: the free ones summed, the others copied from them.

@@ -3,20 +3,16 @@
 use super::arguments::SymbolArguments;
 use super::execute::print_out;
 use super::exit::{Exit, Failure};
-use super::kernel::named;
+use super::kernel::kernel_on;
 use super::rms::support_of;
 use crate::language::Coefficient;
 use crate::measured::Symbol;
-use crate::particles::{VolumeRule, lattice_among};
+use crate::particles::VolumeRule;
 use crate::report::{symbol_report, to_json};
-use crate::study::read_definitions;
 
 pub(super) fn symbol(arguments: &SymbolArguments) -> Result<Exit, Failure> {
     let fault = |error: &dyn std::fmt::Display| Failure::Arguments(error.to_string());
-    let (own_kernels, own_lattices) =
-        arguments.define.as_deref().map(read_definitions).transpose()?.unwrap_or_default();
-    let kernel = named(&arguments.kernel, &own_kernels)?;
-    let lattice = lattice_among(&arguments.lattice, &own_lattices).map_err(|error| fault(&error))?;
+    let (kernel, lattice) = kernel_on(&arguments.kernel, &arguments.lattice, arguments.define.as_deref())?;
     let rule = VolumeRule::by_id(&arguments.volume_rule).map_err(|error| fault(&error))?;
     let support = support_of(&arguments.support_over_dx)?;
     let direction = direction(&arguments.direction, lattice.dimension())?;

@@ -31,8 +31,11 @@ pub use wendland::{wendland_c2, wendland_c2_1d, wendland_c4, wendland_c4_1d, wen
 
 use crate::names::nearest;
 
+/// An id and what constructs its kernel.
+type Entry = (&'static str, fn() -> Kernel);
+
 /// By id, so that naming one does not construct them all.
-const ENTRIES: [(&str, fn() -> Kernel); 10] = [
+const ENTRIES: [Entry; 10] = [
     ("wendland-c2", wendland_c2),
     ("wendland-c4", wendland_c4),
     ("wendland-c6", wendland_c6),

@@ -47,13 +47,23 @@ pub struct SymbolValue {
     pub exact: Vec<[f64; 2]>,
 }
 
+/// One particle of the stencil.
+#[derive(Debug, Clone)]
+struct Entry {
+    /// r_j − r_i.
+    r: [f64; 3],
+    /// Its cell, that of i being the origin.
+    cell: [i64; 3],
+    /// By component of the field, then of the value.
+    weights: Vec<Vec<f64>>,
+}
+
 /// The symbol of an operator at the sites of a lattice with one particle a cell.
 #[derive(Debug, Clone)]
 pub struct Symbol {
     dimension: usize,
     operator: Coefficient,
-    /// r_j − r_i, the cell of j, and its weights by component of the field, then of the value.
-    entries: Vec<([f64; 3], [i64; 3], Vec<Vec<f64>>)>,
+    entries: Vec<Entry>,
     reciprocal: Vec<[f64; 3]>,
 }
 
@@ -82,7 +92,7 @@ impl Symbol {
         // From units of R to units of Δ.
         let unit = support_over_dx.powi(operator.operator().root.units.length);
         let reciprocal = reciprocal(&vectors, dimension);
-        let mut entries: Vec<([f64; 3], [i64; 3], Vec<Vec<f64>>)> = Vec::new();
+        let mut entries: Vec<Entry> = Vec::new();
         for entry in &stencil.entries {
             let r = entry.displacement.map(|x| x * support_over_dx);
             let along = |g: &[f64; 3]| (dot(g, &r) / (2.0 * PI)).round() as i64;
@@ -92,13 +102,13 @@ impl Symbol {
             }
             let weights: Vec<Vec<f64>> =
                 entry.weights.iter().map(|values| values.iter().map(|w| w * unit).collect()).collect();
-            match entries.iter_mut().find(|(_, known, _)| *known == cell) {
-                Some((.., known)) => {
-                    for (known, more) in known.iter_mut().flatten().zip(weights.iter().flatten()) {
+            match entries.iter_mut().find(|known| known.cell == cell) {
+                Some(known) => {
+                    for (known, more) in known.weights.iter_mut().flatten().zip(weights.iter().flatten()) {
                         *known += more;
                     }
                 }
-                None => entries.push((r, cell, weights)),
+                None => entries.push(Entry { r, cell, weights }),
             }
         }
         Ok(Self { dimension, operator: operator.clone(), entries, reciprocal })
@@ -109,7 +119,7 @@ impl Symbol {
         let components = if self.operator.operator().field == Field::Vector { self.dimension } else { 1 };
         let values = self.dimension.pow(u32::from(self.operator.operator().rank()));
         let mut symbol = vec![[0.0; 2]; components * values];
-        for (r, _, weights) in &self.entries {
+        for Entry { r, weights, .. } in &self.entries {
             let (sine, cosine) = libm::sincos(dot(&k, r));
             for (sum, weight) in symbol.iter_mut().zip(weights.iter().flatten()) {
                 sum[0] += weight * cosine;
@@ -188,22 +198,17 @@ impl Symbol {
     pub fn is_null_mode(&self, k: [f64; 3]) -> bool {
         let value = self.at(k);
         let most = |parts: &[Complex]| parts.iter().map(|z| z[0].hypot(z[1])).fold(0.0, f64::max);
-        let weights = self.entries.iter().flat_map(|(.., weights)| weights.iter().flatten());
+        let weights = self.entries.iter().flat_map(|entry| entry.weights.iter().flatten());
         let size: f64 = weights.map(|w| w.abs()).sum();
         most(&value.symbol) <= 1e-12 * size && most(&value.exact) > 1e-9
     }
 
     /// Into how many sets the particles fall that no weight connects; `None` if infinitely many.
     pub fn decoupled_sets(&self) -> Option<u64> {
-        let weight = |weights: &[Vec<f64>]| weights.iter().flatten().map(|w| w.abs()).fold(0.0, f64::max);
-        let largest = self.entries.iter().map(|(.., weights)| weight(weights)).fold(0.0, f64::max);
-        let connected = self.entries.iter().filter(|(.., weights)| weight(weights) > 1e-12 * largest);
-        index(connected.map(|(_, cell, _)| *cell).collect(), self.dimension)
-    }
-
-    /// The distances of the particles that have a weight, in Δ, rising.
-    pub fn reach(&self) -> f64 {
-        self.entries.iter().map(|(r, ..)| dot(r, r).sqrt()).fold(0.0, f64::max)
+        let weight = |entry: &Entry| entry.weights.iter().flatten().map(|w| w.abs()).fold(0.0, f64::max);
+        let largest = self.entries.iter().map(weight).fold(0.0, f64::max);
+        let connected = self.entries.iter().filter(|entry| weight(entry) > 1e-12 * largest);
+        index(connected.map(|entry| entry.cell).collect(), self.dimension)
     }
 }
 

@@ -132,7 +132,7 @@ fn entry(judged: &JudgedCase, margin: f64) -> ClaimEntry {
             let zero = Zero { holds: false, by: None, bound: Some(significant(*largest, DIGITS)) };
             Some(Column { zero: Some(zero), ..Column::default() })
         }
-        MeasuredColumn::Nothing { fits } => {
+        MeasuredColumn::Nothing { fits, .. } => {
             (!fits.is_empty()).then(|| Column { fits: fits.clone(), ..Column::default() })
         }
     };

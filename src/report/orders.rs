@@ -313,9 +313,11 @@ impl MomentOrders {
             }
         }
         for published in &self.published {
+            let value = published.dx_over_h.to_string();
+            let of_beta = if value == published.printed { String::new() } else { format!(" = {value}") };
             line(format!(
-                "  paper: {} = {} ({}, {})",
-                published.printed, published.dx_over_h, published.quantity, published.location
+                "  paper: {}{of_beta} ({}, {})",
+                published.printed, published.quantity, published.location
             ));
         }
     }
@@ -329,7 +331,10 @@ impl ContributionReport {
                 format!("the jump of derivative {} at R (Δ/h)^{}, oscillating", self.power, self.exponent)
             }
             Some(at) => {
-                format!("that of derivative {} at {at} R (Δ/h)^{}, oscillating", self.power, self.exponent)
+                format!(
+                    "the jump of derivative {} at {at} R (Δ/h)^{}, oscillating",
+                    self.power, self.exponent
+                )
             }
         }
     }

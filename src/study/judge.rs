@@ -85,7 +85,9 @@ fn with_derived(
     };
     let Judgement { verdict, why } = judgement;
     let why = why.trim_end_matches('.');
-    if verdict == Verdict::Inconclusive {
+    if verdict == Verdict::Inconclusive
+        && !matches!(measured, MeasuredColumn::Nothing { coincident: true, .. })
+    {
         let why = format!("{why}. Judged by the derived {law} ({from}): {}", alone.why);
         return Judgement { verdict: alone.verdict, why };
     }
@@ -226,7 +228,10 @@ impl Bench<'_> {
             (Ok(displacement), Ok(dx_over_h)) => judge([displacement, dx_over_h], fits, self.margin),
             (Err(why), _) | (_, Err(why)) => {
                 let judgement = Judgement { verdict: Verdict::Inconclusive, why: format!("{why}.") };
-                (MeasuredColumn::Nothing { fits }, judgement)
+                let coincident = [Varies::DxOverH, Varies::Displacement]
+                    .iter()
+                    .any(|varies| self.degenerate(case, *varies) > 0);
+                (MeasuredColumn::Nothing { fits, coincident }, judgement)
             }
         }
     }

@@ -148,6 +148,8 @@ pub enum MeasuredColumn {
     NotZero(f64),
     /// No number; the verdict says why.
     Nothing {
+        /// Whether particles coincided, so that there is nothing to measure, and no small displacement to derive.
+        coincident: bool,
         /// Ids of the fits that did not decide.
         fits: Vec<String>,
     },

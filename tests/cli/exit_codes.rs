@@ -81,12 +81,22 @@ fn inconclusive_is_3_unless_expected() {
     let rule = "lattices = [\"line\"]\nvolume_rules = [\"number-density\"]";
     folder.write("small.toml", meeting("[\"fatehi-eq-38\"]", "").replace("lattices = [\"line\"]", rule));
     folder.run_to(3, "run small.toml");
-    // A ladder whose samples scatter more than the margin decides nothing either.
+    // A ladder whose samples scatter more than the margin decides nothing either; where an order is derived, that does.
     let noisy = meeting("[\"fatehi-eq-38\"]", "")
         .replace("canonical:0.5", "box:0.4")
-        .replace("16\nmost_blocks = 2", "2\nmost_blocks = 1");
-    folder.write("small.toml", noisy.replace("[limits]", "[comparison]\nmargin = 1e-3\n[limits]"));
+        .replace("16\nmost_blocks = 2", "2\nmost_blocks = 1")
+        .replace("[limits]", "[comparison]\nmargin = 1e-3\n[limits]");
+    folder.write("small.toml", noisy.replace("lattices = [\"line\"]", rule));
     folder.run_to(3, "run small.toml");
+    folder.write("small.toml", noisy);
+    folder.run_to(0, "run small.toml");
+    let claim = &folder.json("reports/small/report.json")["claims"][0];
+    assert_eq!(
+        (&claim["verdict"], &claim["derived"]["exponents"]["dx_over_h"]["value"]),
+        (&"refuted".into(), &"1/2".into())
+    );
+    let why = claim["why"].as_str().expect("a reason");
+    assert!(why.contains("Judged by the derived d̃ (Δ/h)^1/2 (the random walk over the neighbours"), "{why}");
 }
 
 #[test]
