@@ -58,8 +58,8 @@ pub(super) fn judge(scene: &Scene, plan: &Plan, results: &[TaskResult]) -> Outco
     }
 }
 
-/// The verdict with the derived column beside the measured one: where nothing was measured to decide it, the derived
-/// exponents do; where both are there, the reason says whether they agree.
+/// The verdict with the derived column beside the measured one: where what was measured does not decide it and does not
+/// contradict the derived exponents, these do; where both are there, the reason says whether they agree.
 fn with_derived(
     claim: &Claim,
     case: &CaseId,
@@ -85,12 +85,6 @@ fn with_derived(
     };
     let Judgement { verdict, why } = judgement;
     let why = why.trim_end_matches('.');
-    if verdict == Verdict::Inconclusive
-        && !matches!(measured, MeasuredColumn::Nothing { coincident: true, .. })
-    {
-        let why = format!("{why}. Judged by the derived {law} ({from}): {}", alone.why);
-        return Judgement { verdict: alone.verdict, why };
-    }
     let inside = |measured: &Measured, exact: Measured| {
         (measured.low - margin..=measured.high + margin).contains(&exact.value)
     };
@@ -101,6 +95,12 @@ fn with_derived(
         MeasuredColumn::Rate { rate, .. } => inside(rate, exact[0].plus(exact[1])),
         _ => true,
     };
+    // What contradicts the measured interval does not decide in its place.
+    let coincident = matches!(measured, MeasuredColumn::Nothing { coincident: true, .. });
+    if verdict == Verdict::Inconclusive && agree && !coincident {
+        let why = format!("{why}. Judged by the derived {law} ({from}): {}", alone.why);
+        return Judgement { verdict: alone.verdict, why };
+    }
     let but = if agree { "" } else { ", which the measured exponents do not reach here" };
     Judgement { verdict, why: format!("{why}. Derived: {law} ({from}){but}.") }
 }
