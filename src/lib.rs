@@ -18,6 +18,7 @@
 //! | [`derived`] | symbolic expansions, proofs of exactness, conservation; orders of moment sums, amplitudes, zero crossings |
 //! | [`measured`] | ladders of sums, samples of disorder, fitted power laws |
 //! | [`claim`] | published statements as data, and verdicts |
+//! | [`record`] | what `report.json` holds, field by field |
 //! | [`study`] | scenes, plans, runs that resume |
 //! | [`report`] | one record and its views |
 //! | [`cli`] | the command line |
@@ -57,6 +58,7 @@ pub mod language;
 pub mod measured;
 pub mod names;
 pub mod particles;
+pub mod record;
 pub mod report;
 pub mod study;
 pub mod sums;

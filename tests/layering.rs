@@ -18,6 +18,7 @@ const LAYERS: &[&[&str]] = &[
     &["derived", "measured"],
     &["evolve"],
     &["claim"],
+    &["record"],
     &["study"],
     &["report"],
     &["cli"],

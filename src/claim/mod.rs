@@ -4,6 +4,7 @@
 //! rationals in β. A new paper is one file here and one line in [`catalogue`]; a new claim is one entry in its paper's
 //! file, or one in a scene.
 
+mod assertion;
 mod compare;
 mod error;
 mod exponents;
@@ -12,6 +13,7 @@ mod printed;
 mod rollup;
 mod verdict;
 
+pub use assertion::{Assertion, Direction, Observed, Published, Sign, Variable};
 pub use compare::{Comparison, Judgement, Measured, compare_exponent, judge_convergence, judge_power_law};
 pub use error::ClaimError;
 pub use exponents::{BetaExponent, Powers};

@@ -4,11 +4,11 @@ use super::{Judgement, Verdict};
 use itertools::Itertools;
 
 /// The verdict of one case with the labels that tell it apart, in the order in which a condition is looked for:
-/// dimension, disorder, kernel, lattice, volume rule.
+/// dimension, disorder, kernel, lattice, volume rule, and whatever else. All cases of a claim have equally many.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CaseVerdict {
     /// `3-D`, `box`, `wendland-c2`, `simple-cubic`, `constant`.
-    pub labels: [String; 5],
+    pub labels: Vec<String>,
     /// The verdict of this case.
     pub verdict: Verdict,
 }
@@ -52,7 +52,7 @@ fn label(case: &CaseVerdict, axes: &[usize]) -> String {
 /// The labels that tell all cases apart, without those that follow from earlier ones.
 fn varying(cases: &[CaseVerdict]) -> Vec<usize> {
     let told_apart = |axes: &[usize]| cases.iter().map(|case| label(case, axes)).unique().count();
-    (1..5).fold(vec![0], |axes, axis| {
+    (1..cases.first().map_or(1, |case| case.labels.len())).fold(vec![0], |axes, axis| {
         let more = [axes.as_slice(), &[axis]].concat();
         if told_apart(&more) > told_apart(&axes) { more } else { axes }
     })
@@ -60,13 +60,14 @@ fn varying(cases: &[CaseVerdict]) -> Vec<usize> {
 
 /// The smallest set of labels, earlier ones first, of which the verdict is a function.
 fn deciding_axes(cases: &[&CaseVerdict]) -> Vec<usize> {
-    (1..=5)
-        .flat_map(|size| (0..5).combinations(size))
+    let all = cases.first().map_or(0, |case| case.labels.len());
+    (1..=all)
+        .flat_map(|size| (0..all).combinations(size))
         .find(|axes| {
             let pairs = cases.iter().map(|case| (label(case, axes), case.verdict)).unique().collect_vec();
             pairs.iter().map(|(label, _)| label).all_unique()
         })
-        .unwrap_or_else(|| (0..5).collect())
+        .unwrap_or_else(|| (0..all).collect())
 }
 
 #[cfg(test)]
@@ -74,7 +75,7 @@ mod tests {
     use super::*;
 
     fn case(dimension: &str, disorder: &str, verdict: Verdict) -> CaseVerdict {
-        let labels = [dimension, disorder, "k", "l", "v"].map(str::to_owned);
+        let labels = [dimension, disorder, "k", "l", "v"].map(str::to_owned).to_vec();
         CaseVerdict { labels, verdict }
     }
 

@@ -330,6 +330,9 @@ pub(super) struct KernelArguments {
 pub(super) struct SchemaArguments {
     /// Of what
     pub(super) of: SchemaOf,
+    /// Of scenes of this kind (`study.kind`); by default those of orders
+    #[arg(long)]
+    pub(super) kind: Option<String>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

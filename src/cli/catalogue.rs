@@ -1,6 +1,6 @@
 //! `schema` and `list`.
 
-use super::arguments::{ListArguments, Listed, SchemaOf};
+use super::arguments::{ListArguments, Listed, SchemaArguments, SchemaOf};
 use super::execute::print_out;
 use super::exit::{Exit, Failure};
 use crate::claim;
@@ -8,14 +8,25 @@ use crate::kernel;
 use crate::language::operators;
 use crate::particles::{VolumeRule, disorder, lattice};
 use crate::report::Report;
-use crate::study::RawScene;
+use crate::study::{ORDER_KINDS, RawScene, survey_kinds};
 use crate::sums::Moment;
 use serde_json::{Value, json};
 
-pub(super) fn schema(of: SchemaOf) -> Result<Exit, Failure> {
-    let schema = match of {
-        SchemaOf::Scene => schemars::schema_for!(RawScene),
-        SchemaOf::Report => schemars::schema_for!(Report),
+pub(super) fn schema(arguments: &SchemaArguments) -> Result<Exit, Failure> {
+    let schema = match (arguments.of, &arguments.kind) {
+        (SchemaOf::Report, _) => schemars::schema_for!(Report),
+        (SchemaOf::Scene, None) => schemars::schema_for!(RawScene),
+        (SchemaOf::Scene, Some(kind)) if ORDER_KINDS.contains(&kind.as_str()) => {
+            schemars::schema_for!(RawScene)
+        }
+        (SchemaOf::Scene, Some(kind)) => {
+            let found = survey_kinds().find(|(id, _)| id == kind).map(|(_, schema)| schema);
+            found.ok_or_else(|| {
+                let kinds = ORDER_KINDS.iter().copied().chain(survey_kinds().map(|(id, _)| id));
+                let kinds = kinds.collect::<Vec<_>>().join(", ");
+                Failure::Arguments(format!("there is no study of kind '{kind}': the kinds are {kinds}"))
+            })?
+        }
     };
     print_out(&format!("{:#}\n", schema.as_value()));
     Ok(Exit::AsExpected)

@@ -5,7 +5,9 @@ use super::exit::{Exit, Failure};
 use super::progress::Progress;
 use super::terminal;
 use crate::report::{assemble, check_target, to_json, write_report};
-use crate::study::{BlockStore, Plan, RunOptions, Scene, run as run_study};
+use crate::study::{
+    Analysis, BlockStore, Omission, Plan, RunOptions, SurveyScene, run as run_study, run_survey,
+};
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -14,10 +16,13 @@ use std::time::Instant;
 
 pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, Failure> {
     let started = Instant::now();
-    let scene = Scene::read(&arguments.scene, arguments.quick)?;
-    let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(&scene.name));
+    let analysis = Analysis::read(&arguments.scene, arguments.quick)?;
+    let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(analysis.name()));
     check_target(&out)?;
-    let plan = Plan::within_budget(&scene)?;
+    let plan = match &analysis {
+        Analysis::Orders(scene) => Some(Plan::within_budget(scene)?),
+        Analysis::Survey(_) => None,
+    };
     if let Some(missing) = arguments.from.iter().find(|folder| !folder.is_dir()) {
         let message = format!("{} is no folder: name the folders of finished blocks", missing.display());
         return Err(Failure::Arguments(message));
@@ -40,14 +45,19 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
         cancel: &cancel,
         events: &|event| progress.take(event),
     };
-    let outcome = pool.install(|| run_study(&scene, &plan, &options));
+    let report = pool.install(|| match (&analysis, &plan) {
+        (Analysis::Orders(scene), Some(plan)) => {
+            run_study(scene, plan, &options).map(|outcome| outcome.as_ref().map(assemble))
+        }
+        (Analysis::Orders(_), None) => unreachable!("a study of orders has a plan"),
+        (Analysis::Survey(scene), _) => run_survey(scene, &options),
+    });
     let (seconds, stored) = progress.finish();
-    let Some(outcome) = outcome? else {
+    let Some(report) = report? else {
         let name = arguments.scene.display();
         eprintln!("this shard's blocks are stored; when all are, `remainder merge {name}` writes the report");
         return Ok(Exit::AsExpected);
     };
-    let report = assemble(&outcome);
     let timings = json!({
         "wall_seconds": started.elapsed().as_secs_f64(),
         "threads": pool.current_num_threads(),
@@ -65,7 +75,10 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
 }
 
 pub(super) fn plan(arguments: &PlanArguments) -> Result<Exit, Failure> {
-    let scene = Scene::read(&arguments.scene, arguments.quick)?;
+    let scene = match Analysis::read(&arguments.scene, arguments.quick)? {
+        Analysis::Orders(scene) => scene,
+        Analysis::Survey(scene) => return Ok(plan_survey(&scene, arguments.json)),
+    };
     let plan = Plan::of(&scene);
     if arguments.json {
         let value = json!({
@@ -89,13 +102,48 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<Exit, Failure> {
     for task in &plan.tasks {
         text += &format!("  {}: {:.1e} pairs\n", task.label(), task.cost(&scene) as f64);
     }
-    text += "\nLeft out:\n";
-    for omission in &plan.omissions {
+    text += &left_out(&plan.omissions);
+    print_out(&text);
+    Ok(Exit::AsExpected)
+}
+
+fn plan_survey(scene: &SurveyScene, as_json: bool) -> Exit {
+    let (tasks, omissions) = (scene.survey.tasks(), scene.survey.omissions());
+    let cost = tasks.iter().map(|task| task.cost).fold(0, u64::saturating_add);
+    if as_json {
+        let value = json!({
+            "scene": scene.name,
+            "claims": scene.survey.claims(),
+            "tasks": tasks.iter().map(|task| json!({"label": task.label, "key": task.key(), "pairs": task.cost})).collect::<Vec<_>>(),
+            "most_pairs": cost,
+            "left_out": omissions.iter().map(|o| json!({"what": o.what, "why": o.why, "saved": o.saved})).collect::<Vec<_>>(),
+        });
+        print_out(&format!("{value:#}\n"));
+        return Exit::AsExpected;
+    }
+    let claims = scene.survey.claims().len();
+    let mut text = format!(
+        "{}: {claims} claims, {} tasks\n  about {:.2e} pairs\n",
+        scene.name,
+        tasks.len(),
+        cost as f64
+    );
+    text += "\nComputed:\n";
+    for task in &tasks {
+        text += &format!("  {}: {:.1e} pairs\n", task.label, task.cost as f64);
+    }
+    text += &left_out(&omissions);
+    print_out(&text);
+    Exit::AsExpected
+}
+
+fn left_out(omissions: &[Omission]) -> String {
+    let mut text = "\nLeft out:\n".to_owned();
+    for omission in omissions {
         let saved = omission.saved.as_ref().map(|saved| format!(" (saves {saved})")).unwrap_or_default();
         text += &format!("  {}: {}{saved}\n", omission.what, omission.why);
     }
-    print_out(&text);
-    Ok(Exit::AsExpected)
+    text
 }
 
 /// Prints to standard output; a reader that has gone away (a closed pipe) is no error of ours.

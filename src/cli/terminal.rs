@@ -46,7 +46,11 @@ fn section_text(text: &mut String, section: &Section, widths: [usize; 5], colour
     let _ = writeln!(text, "  {}{expected}: {}", paint(section.verdict, coloured, 0), section.why);
     let [case, published, derived, displacement, dx_over_h] = widths;
     let disordered = section.rows.iter().any(|row| !row.displacement.is_empty());
-    let titles = if disordered { "d̃, Δ/h" } else { "Δ/h" };
+    let titles = match (section.of_exponents, disordered) {
+        (true, true) => "d̃, Δ/h",
+        (true, false) => "Δ/h",
+        (false, _) => "published",
+    };
     let _ = writeln!(
         text,
         "      {:case$}  {:published$}  {:derived$}  {:displacement$}  {:dx_over_h$}",
@@ -54,7 +58,7 @@ fn section_text(text: &mut String, section: &Section, widths: [usize; 5], colour
         titles,
         "derived",
         if disordered { "measured d̃ " } else { "" },
-        "measured Δ/h"
+        if section.of_exponents { "measured Δ/h" } else { "measured" }
     );
     for row in &section.rows {
         let _ = writeln!(

@@ -1,10 +1,10 @@
 //! From an outcome to the record.
 
-use super::record::*;
 use crate::claim::{Claim, Measured, Statement, convergence_power};
 use crate::derived::{Conservation, Conserved, Expansion, Format};
 use crate::exact::{Rational, int, rational_text};
 use crate::language::{Coefficient, Subject};
+use crate::record::*;
 use crate::study::{CaseId, DerivedColumn, JudgedCase, LadderFit, MeasuredColumn, Outcome, Varies};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 const DIGITS: usize = 8;
 
 /// The unit of κ in "Δ must fall faster than h^κ".
-const POWER: &str = "power of h that Δ must fall faster than";
+pub(super) const POWER: &str = "power of h that Δ must fall faster than";
 
 /// The record of an outcome: a pure function of it.
 pub fn assemble(outcome: &Outcome) -> Report {
@@ -43,7 +43,6 @@ pub fn assemble(outcome: &Outcome) -> Report {
             })
             .collect(),
         fits: outcome.fits.iter().filter_map(fit).collect(),
-        series: Vec::new(),
         left_out: outcome
             .omissions
             .iter()
@@ -54,7 +53,7 @@ pub fn assemble(outcome: &Outcome) -> Report {
             })
             .collect(),
         cost: Cost { exact_sums: outcome.exact_sums, samples: outcome.samples, pairs: outcome.pairs },
-        runs: Vec::new(),
+        ..Report::default()
     }
 }
 

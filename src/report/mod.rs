@@ -6,12 +6,12 @@ mod layout;
 mod markdown;
 mod orders;
 mod printed;
-mod record;
 mod rms;
 mod symbol;
 mod table;
 mod write;
 
+pub use crate::record::*;
 pub use assemble::assemble;
 pub use expansion::{
     ConservationReport, ExpansionReport, OrderReport, TermReport, Vanishes, expansion_report,
@@ -23,7 +23,6 @@ pub use orders::{
     OrdersRequest, PublishedOrder, orders_report,
 };
 pub use printed::{PrintedError, PrintedVerdict, printed_markdown, printed_verdicts};
-pub use record::*;
 pub use rms::{RmsReport, SampledReport};
 pub use symbol::{NullMode, SymbolReport, WaveReport, symbol_report};
 pub use table::{Row, Section, sections};

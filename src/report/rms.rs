@@ -1,9 +1,9 @@
 //! An RMS error as a record and as text.
 
-use super::record::significant;
 use crate::derived::{Model, RmsError};
 use crate::language::Subject;
 use crate::measured::SampledError;
+use crate::record::significant;
 use serde::Serialize;
 use std::fmt::Write as _;
 

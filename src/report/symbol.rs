@@ -1,8 +1,8 @@
 //! The Fourier symbol of an operator as a record and as text.
 
-use super::record::significant;
 use crate::language::Coefficient;
 use crate::measured::{Symbol, SymbolValue};
+use crate::record::significant;
 use serde::Serialize;
 use std::fmt::Write as _;
 

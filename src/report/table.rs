@@ -1,6 +1,8 @@
 //! The verdict table as plain rows, for the terminal and for Markdown alike.
 
-use super::record::{ClaimEntry, Column, Estimate, Number, Report, Verdict};
+use super::assemble::POWER;
+use crate::record::{ClaimEntry, ClaimKind, Column, Estimate, Number, Report, Verdict, significant};
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// One claim with its cases.
@@ -20,6 +22,8 @@ pub struct Section {
     pub expected: Option<Verdict>,
     /// Of a claim on an operator: the coefficient by its expansion, and what the operator conserves.
     pub operator: Option<[String; 3]>,
+    /// Whether it is about exponents of d̃ and Δ/h; else [`Row::dx_over_h`] holds whatever was measured.
+    pub of_exponents: bool,
     /// The cases.
     pub rows: Vec<Row>,
 }
@@ -62,6 +66,7 @@ pub fn sections(report: &Report) -> Vec<Section> {
                 why: rolled.why.clone(),
                 expected: rolled.expected,
                 operator: entries.first().and_then(|entry| operator(entry)),
+                of_exponents: entries.iter().all(|entry| !is_of_survey(entry)),
                 rows: entries.iter().map(|entry| row(entry, &shown)).collect(),
             }
         })
@@ -95,6 +100,80 @@ fn varying(report: &Report) -> Vec<&'static str> {
         .collect()
 }
 
+/// What else tells the cases of a survey apart.
+fn more(entry: &ClaimEntry) -> impl Iterator<Item = String> {
+    let of_orders = ["operator", "order", "expansion", "conserves"];
+    let orders = entry.case.more.contains_key("expansion");
+    let told = entry.case.more.iter().filter(move |(key, _)| !(orders && of_orders.contains(&key.as_str())));
+    told.map(|(key, value)| match value {
+        Value::String(text) => text.clone(),
+        value => format!("{key} {value}"),
+    })
+}
+
+/// Whether the entry is about something else than exponents of d̃ and Δ/h, a zero, or a condition of convergence.
+fn is_of_survey(entry: &ClaimEntry) -> bool {
+    let Some(published) = &entry.published else { return true };
+    match entry.kind {
+        ClaimKind::Ratio | ClaimKind::Trend | ClaimKind::Inequality => true,
+        ClaimKind::Zero => false,
+        ClaimKind::Constant => published.unit.as_deref() != Some(POWER),
+        ClaimKind::PowerLaw => published.exponents.as_ref().is_none_or(|e| e.dx_over_h.is_none()),
+    }
+}
+
+/// A column in words, whatever it holds.
+fn plain(column: Option<&Column>) -> String {
+    let Some(column) = column else { return "–".into() };
+    if let Some(e) = &column.exponents {
+        let all = [("d̃", &e.displacement), ("h", &e.h), ("Δ/h", &e.dx_over_h), ("Δ", &e.dx), ("Δt", &e.dt)];
+        let there = all.iter().filter_map(|(name, e)| e.as_ref().map(|e| format!("{name}^{}", spread(e))));
+        return there.collect::<Vec<_>>().join(", ");
+    }
+    if let Some(value) = &column.value {
+        let unit = column.unit.as_deref().filter(|unit| *unit != "1");
+        return format!("{}{}", spread(value), unit.map(|unit| format!(" {unit}")).unwrap_or_default());
+    }
+    if let Some(zero) = &column.zero {
+        let bound = zero.bound.unwrap_or(0.0);
+        return if zero.holds { "0".into() } else { format!("up to {bound:.2e}") };
+    }
+    if let Some(trend) = &column.trend {
+        let slope = trend.slope.as_ref().map(|slope| format!(", slope {}", spread(slope)));
+        return format!("{}{}", trend.direction, slope.unwrap_or_default());
+    }
+    if let Some(relation) = &column.relation {
+        return match (&relation.left_value, &relation.right_value) {
+            (Some(left), Some(right)) => format!("{} and {}", spread(left), spread(right)),
+            _ => format!("{} {} {}", relation.left, relation.sign, relation.right),
+        };
+    }
+    "–".into()
+}
+
+/// A number, with its interval if it has one.
+fn spread(estimate: &Estimate) -> String {
+    if estimate.low == estimate.high {
+        return text_of(&estimate.value);
+    }
+    format!("{} [{}, {}]", text_of(&estimate.value), text_of(&estimate.low), text_of(&estimate.high))
+}
+
+fn text_of(value: &Number) -> String {
+    match value {
+        Number::Rational(text) => text.clone(),
+        Number::Float(value) => short(*value),
+    }
+}
+
+/// Four significant digits; whole numbers as they are.
+pub(super) fn short(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
+        return format!("{}", significant(value, 4));
+    }
+    if value.fract() == 0.0 && value.abs() < 1e15 { format!("{value}") } else { format!("{value:.3e}") }
+}
+
 fn row(entry: &ClaimEntry, shown: &[&str]) -> Row {
     let case = &entry.case;
     let mut parts = vec![match case.disorder.as_deref() {
@@ -107,6 +186,19 @@ fn row(entry: &ClaimEntry, shown: &[&str]) -> Row {
             "lattice" => case.lattice.clone().unwrap_or_default(),
             _ => case.volume_rule.clone(),
         });
+    }
+    parts.extend(more(entry));
+    if is_of_survey(entry) {
+        return Row {
+            dimension: format!("{}-D", case.dimension),
+            case: parts.join(" "),
+            published: plain(entry.published.as_ref()),
+            derived: plain(entry.derived.as_ref()),
+            displacement: String::new(),
+            dx_over_h: plain(entry.measured.as_ref()),
+            verdict: entry.verdict,
+            why: entry.why.clone(),
+        };
     }
     let exponent = |column: &Option<Column>, which: fn(&super::Exponents) -> &Option<Estimate>| {
         column.as_ref().and_then(|c| c.exponents.as_ref()).and_then(|e| which(e).clone())

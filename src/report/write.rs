@@ -2,7 +2,7 @@
 
 use super::layout::to_json;
 use super::markdown::markdown;
-use super::record::{Report, SCHEMA};
+use crate::record::{Report, SCHEMA};
 use crate::study::write_whole;
 use serde::Deserialize;
 use std::fs;

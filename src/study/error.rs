@@ -38,6 +38,14 @@ pub enum StudyError {
         /// Why.
         source: SampleError,
     },
+    /// A task of a survey could not be done.
+    #[error("{task}: {source}")]
+    Survey {
+        /// The task.
+        task: String,
+        /// Why.
+        source: super::TaskError,
+    },
     /// A file could not be read or written.
     #[error("{action} {}: {source}", path.display())]
     File {

@@ -119,7 +119,8 @@ fn roll(scene: &Scene, claim: &Claim, judged: &[JudgedCase]) -> RolledClaim {
                     case.kernel.clone(),
                     case.lattice.clone(),
                     case.rule.to_string(),
-                ],
+                ]
+                .to_vec(),
                 verdict: entry.judgement.verdict,
             }
         })

@@ -47,49 +47,22 @@ pub struct CaseGroup {
     pub disorders: Vec<Disorder>,
 }
 
-impl Scene {
-    /// Reads a scene from a file, or from `scene.toml` or `scene.json` in a folder.
-    ///
-    /// # Errors
-    /// [`SceneError`] with line and column where there is one.
-    pub fn read(path: &Path, quick: bool) -> Result<Self, SceneError> {
-        let file = match path.is_dir() {
-            true => {
-                ["scene.toml", "scene.json"].map(|name| path.join(name)).into_iter().find(|p| p.is_file())
-            }
-            false => Some(path.to_owned()),
-        };
-        let nowhere = SceneText { path: path.to_owned(), text: String::new() };
-        let file =
-            file.ok_or_else(|| nowhere.error("this folder holds neither scene.toml nor scene.json"))?;
-        let text = std::fs::read_to_string(&file).map_err(|error| {
-            nowhere.error(format!(
-                "cannot be read as a scene ({error}): give a scene file, or a folder with scene.toml"
-            ))
-        })?;
-        let named = if file.file_stem().is_some_and(|stem| stem == "scene") {
-            file.canonicalize().ok().and_then(|full| full.parent().map(Path::to_owned))
-        } else {
-            Some(file.with_extension(""))
-        };
-        let name =
-            named.as_deref().and_then(Path::file_name).and_then(|n| n.to_str()).unwrap_or("scene").to_owned();
-        Self::from_text(&SceneText { path: file, text }, &name, quick)
-    }
+/// The kinds of study that a [`Scene`] may be of.
+pub const KINDS: &[&str] = &["moment-orders", "operator-orders"];
 
+impl Scene {
     /// Reads a scene from its text.
     ///
     /// # Errors
-    /// As [`Scene::read`].
+    /// [`SceneError`] with line and column where there is one.
     pub fn from_text(text: &SceneText, name: &str, quick: bool) -> Result<Self, SceneError> {
         Self::resolve(parse(text)?, text, name, quick)
     }
 
     fn resolve(raw: RawScene, text: &SceneText, name: &str, quick: bool) -> Result<Self, SceneError> {
-        if !["moment-orders", "operator-orders"].contains(&raw.study.kind.as_str()) {
-            let message = format!("there is no study of kind '{}'", raw.study.kind);
-            let help = "write kind = \"moment-orders\", or \"operator-orders\"";
-            return Err(text.error_at("study.kind", message, Some(help)));
+        if !KINDS.contains(&raw.study.kind.as_str()) {
+            let message = format!("'{}' is no study of orders: {}", raw.study.kind, KINDS.join(", "));
+            return Err(text.error_at("study.kind", message, None));
         }
         let at = |keys: String, message: String| text.error_at(&keys, message, None);
         let own = own_kernels(&raw.define, text)?;
@@ -265,7 +238,7 @@ impl Scene {
 }
 
 /// Reads TOML or JSON, with the place of what does not fit.
-fn parse<T: serde::de::DeserializeOwned>(text: &SceneText) -> Result<T, SceneError> {
+pub(super) fn parse<T: serde::de::DeserializeOwned>(text: &SceneText) -> Result<T, SceneError> {
     if text.is_json() {
         serde_json::from_str(&text.text).map_err(|error| {
             let line_start: usize =

@@ -29,6 +29,36 @@ pub struct SceneError {
 }
 
 impl SceneText {
+    /// Reads a scene's text from a file, or from `scene.toml` or `scene.json` in a folder, and its name: that of its folder,
+    /// or of its file.
+    ///
+    /// # Errors
+    /// [`SceneError`] if there is no such file, or it is not text.
+    pub fn open(path: &Path) -> Result<(Self, String), SceneError> {
+        let file = match path.is_dir() {
+            true => {
+                ["scene.toml", "scene.json"].map(|name| path.join(name)).into_iter().find(|p| p.is_file())
+            }
+            false => Some(path.to_owned()),
+        };
+        let nowhere = Self { path: path.to_owned(), text: String::new() };
+        let file =
+            file.ok_or_else(|| nowhere.error("this folder holds neither scene.toml nor scene.json"))?;
+        let text = std::fs::read_to_string(&file).map_err(|error| {
+            nowhere.error(format!(
+                "cannot be read as a scene ({error}): give a scene file, or a folder with scene.toml"
+            ))
+        })?;
+        let named = if file.file_stem().is_some_and(|stem| stem == "scene") {
+            file.canonicalize().ok().and_then(|full| full.parent().map(Path::to_owned))
+        } else {
+            Some(file.with_extension(""))
+        };
+        let name = named.as_deref().and_then(Path::file_name).and_then(|n| n.to_str());
+        let name = name.unwrap_or("scene").to_owned();
+        Ok((Self { path: file, text }, name))
+    }
+
     /// Whether the text is JSON (by its file's ending); TOML otherwise.
     pub fn is_json(&self) -> bool {
         self.path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))

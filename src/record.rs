@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 pub const SCHEMA: &str = "remainder-report/1";
 
 /// One analysis: where it came from, what was claimed, derived and measured, and the verdicts.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Report {
     /// Always `remainder-report/1`.
@@ -35,10 +35,84 @@ pub struct Report {
     /// Time-dependent runs, where the scene has any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub runs: Vec<TimeRun>,
+    /// The constants of viscous models.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub viscosity_constants: Vec<ViscosityConstant>,
+    /// By what bare Laplacians multiply u″.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub laplacian_factors: Vec<LaplacianFactor>,
+    /// Sizes of a domain that a paper does not print, inferred from its fits.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inferred_domain_size: Vec<InferredDomainSize>,
+    /// Other tables, each a list of rows with one set of keys.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub tables: BTreeMap<String, Vec<BTreeMap<String, Value>>>,
+}
+
+/// The factor that makes a viscous model consistent.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ViscosityConstant {
+    /// `C`, `D`, `MCG`.
+    pub model: String,
+    /// D.
+    pub dimension: u8,
+    /// Id of the kernel.
+    pub kernel: String,
+    /// Id of the lattice, or `continuum`.
+    pub lattice: String,
+    /// Δ/h; 0 in the continuum.
+    pub dx_over_h: f64,
+    /// `constant` or `number-density`.
+    pub volume_rule: String,
+    /// Whether 0.01 h² is added to r².
+    pub regularised: bool,
+    /// `shear-axis`, `shear-diagonal`, `compression`.
+    pub direction: String,
+    /// What it should be.
+    pub derived: f64,
+    /// What is printed.
+    pub published: f64,
+}
+
+/// The factor by which the bare sum of a Laplacian multiplies u″ on the quadratic field.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LaplacianFactor {
+    /// Id of the operator.
+    pub operator: String,
+    /// D.
+    pub dimension: u8,
+    /// Id of the lattice.
+    pub lattice: String,
+    /// h/Δ.
+    pub h_over_dx: f64,
+    /// `constant` or `number-density`.
+    pub volume_rule: String,
+    /// In the continuum.
+    pub continuum: f64,
+    /// On the lattice.
+    pub lattice_value: f64,
+    /// What is printed.
+    pub published: f64,
+}
+
+/// The size of a domain as one of a paper's fits implies it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InferredDomainSize {
+    /// Which fit.
+    pub fit: String,
+    /// In metres.
+    pub value_m: f64,
+    /// Lower end of the interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
 }
 
 /// What made a report.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
     /// Version of the program.
