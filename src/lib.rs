@@ -17,6 +17,7 @@
 //! | [`language`] | operators as text: parser, types, catalogue |
 //! | [`derived`] | symbolic expansions, proofs of exactness, conservation; orders of moment sums, amplitudes, zero crossings |
 //! | [`measured`] | ladders of sums, samples of disorder, fitted power laws |
+//! | [`evolve`] | operators as sparse matrices, time integrators, spectra |
 //! | [`claim`] | published statements as data, and verdicts |
 //! | [`record`] | what `report.json` holds, field by field |
 //! | [`study`] | scenes, plans, runs that resume |
@@ -52,6 +53,7 @@
 pub mod claim;
 pub mod cli;
 pub mod derived;
+pub mod evolve;
 pub mod exact;
 pub mod kernel;
 pub mod language;
