@@ -12,6 +12,7 @@
 mod assemble;
 mod error;
 mod explicit;
+pub mod heat;
 mod implicit;
 mod krylov;
 mod matrix;

@@ -4,6 +4,7 @@
 //! report. The runner does the rest: the store, shards, threads, progress, interruption, verdicts over all cases.
 
 mod entry;
+mod heat;
 mod run;
 mod scene;
 
