@@ -6,6 +6,7 @@
 //! how the figures read, and [`Boundary::Ghosts`] mirrors the particles, with T reflected about its value on the wall.
 
 use super::{EvolveError, Matrix, System, assemble};
+use crate::language::tree::OfParticle;
 use crate::measured::Program;
 use crate::particles::{Cloud, Disorder, Draw, SampleStream, Site, Support, lattice_by_id};
 use serde::{Deserialize, Serialize};
@@ -47,6 +48,14 @@ pub struct HeatProblem {
     pub seed: u64,
     /// What lies beyond the walls.
     pub boundary: Boundary,
+    /// Of the layered problem, the diffusivity of the upper half over that of the lower half.
+    pub jump: Option<f64>,
+}
+
+/// The steady solution of the layered problem: T = 0 below and 1 above, diffusivity 1 for y < 1/2 and `jump` beyond.
+pub fn layered(y: f64, jump: f64) -> f64 {
+    let flux = 2.0 / (1.0 + 1.0 / jump);
+    if y < 0.5 { flux * y } else { 1.0 - flux * (1.0 - y) / jump }
 }
 
 /// The semi-discrete problem: unknowns are the particles that are not on a wall.
@@ -113,7 +122,11 @@ impl HeatProblem {
             let (i, j) = (k / n, k % n);
             i == 0 || j == 0 || i == n - 1 || j == n - 1
         };
-        let wall_value = |k: usize| if k % n == n - 1 { libm::sin(PI * grid[k][0]) } else { 0.0 };
+        let wall_value = |k: usize| match self.jump {
+            Some(jump) => layered(grid[k][1], jump),
+            None if k % n == n - 1 => libm::sin(PI * grid[k][0]),
+            None => 0.0,
+        };
         let inner: Vec<usize> = (0..n * n).filter(|k| !on_wall(*k)).collect();
         let mut unknown = vec![usize::MAX; n * n];
         for (index, k) in inner.iter().enumerate() {
@@ -126,7 +139,10 @@ impl HeatProblem {
         let positions: Vec<[f64; 3]> =
             grid.iter().copied().chain(images.iter().map(|(place, _)| *place)).collect();
         let volumes = vec![dx * dx; positions.len()];
+        let diffusivity = |y: f64| if y < 0.5 { 1.0 } else { self.jump.unwrap_or(1.0) };
+        let carried = positions.iter().map(|[_, y, _]| diffusivity(*y)).collect();
         let cloud = Cloud::new(2, positions, volumes, Support::Uniform(support))?;
+        let cloud = cloud.with_field(OfParticle::Viscosity.field_name(), carried)?;
         let rows = assemble(program, &cloud, &inner)?;
         let mut source = vec![0.0; inner.len()];
         let folded: Vec<Vec<(u32, f64)>> = (0..inner.len())

@@ -38,6 +38,20 @@ impl Entry {
     }
 }
 
+/// The operator of this id, or the one written: a word is an id, anything else is text in the language.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn named_or_written(text: &str) -> Result<Operator, String> {
+    if text.chars().all(|c| c.is_alphanumeric() || "-+_".contains(c)) {
+        return by_id(text).map_err(|e| e.to_string())?.operator().map_err(|e| e.to_string());
+    }
+    Operator::parse(text).map_err(|error| {
+        let shown = text.get(error.span.clone()).unwrap_or_default();
+        format!("{error} (at byte {}: '{shown}')", error.span.start + 1)
+    })
+}
+
 /// There is no operator of this name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("there is no operator '{name}'{}", nearest.as_ref().map(|n| format!(": did you mean '{n}'?")).unwrap_or_default())]

@@ -7,6 +7,7 @@ mod entry;
 mod heat;
 mod run;
 mod scene;
+mod stiff;
 
 pub use entry::{Row, entry, table_row};
 pub use run::run_survey;

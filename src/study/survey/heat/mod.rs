@@ -1,12 +1,12 @@
 //! The heat problem of Fatehi & Manzari (2011), §6, with any Laplacian, radius, disorder, boundary and integrator.
 
 mod judge;
-mod run;
+pub(super) mod run;
 
 use super::super::plan::Omission;
 use super::{Parameters, Survey, SurveyTask, TaskError};
 use crate::evolve::heat::{Boundary, HeatProblem};
-use crate::language::{Field, operators};
+use crate::language::{Field, Operator, operators};
 use crate::record::Report;
 use itertools::iproduct;
 use run::{Configuration, Integrator, compute};
@@ -39,7 +39,7 @@ pub(super) struct Runs {
     /// ε: particles are moved by up to ε/4 Δ along each axis.
     #[serde(default = "regular")]
     pub epsilon: Vec<f64>,
-    /// Ids of operators.
+    /// Operators, by id or as text.
     pub schemes: Vec<String>,
     /// `euler`, `rk2`, `rk4`, `rkc`, `implicit-euler`, `tr-bdf2`, `exact` (the semi-discrete system solved to 1e-9).
     #[serde(default = "euler")]
@@ -87,6 +87,15 @@ impl Default for Heat {
     }
 }
 
+/// An operator by its id or as text, that takes a scalar to a scalar.
+pub(super) fn laplacian(text: &str) -> Result<Operator, String> {
+    let operator = operators::named_or_written(text)?;
+    if operator.field != Field::Scalar || operator.rank() != 0 {
+        return Err(format!("'{text}' does not take a scalar to a scalar: name a Laplacian of a scalar"));
+    }
+    Ok(operator)
+}
+
 /// The largest grid of a first look.
 const QUICK: u32 = 40;
 
@@ -107,16 +116,7 @@ impl Parameters for Heat {
         for (index, runs) in self.runs.iter().enumerate() {
             let place = |field: &str| format!("runs.{index}.{field}");
             for scheme in &runs.schemes {
-                let operator =
-                    operators::by_id(scheme).map_err(|error| at(&place("schemes"), error.to_string()))?;
-                let operator =
-                    operator.operator().map_err(|error| at(&place("schemes"), error.to_string()))?;
-                if operator.field != Field::Scalar || operator.rank() != 0 {
-                    let message = format!(
-                        "'{scheme}' does not take a scalar to a scalar: name a Laplacian of a scalar"
-                    );
-                    return Err(at(&place("schemes"), message));
-                }
+                laplacian(scheme).map_err(|message| at(&place("schemes"), message))?;
             }
             let integrators: Vec<Integrator> = runs
                 .integrators
@@ -151,6 +151,7 @@ impl Parameters for Heat {
                     epsilon: *epsilon,
                     seed,
                     boundary: *boundary,
+                    jump: None,
                 };
                 let known = configurations
                     .iter_mut()

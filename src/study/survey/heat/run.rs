@@ -6,7 +6,6 @@ use crate::evolve::{
     EvolveError, Explicit, Implicit, chebyshev_stages, exponential, march, march_implicit, spectrum, steady,
 };
 use crate::kernel::Kernel;
-use crate::language::operators;
 use crate::measured::Program;
 use crate::record::significant;
 use serde::{Deserialize, Serialize};
@@ -23,7 +22,7 @@ const SAFETY: f64 = 1.1;
 
 /// How time is gone through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Integrator {
+pub(in super::super) enum Integrator {
     /// With the step that the Courant number gives.
     Explicit(Explicit),
     /// Runge–Kutta–Chebyshev with this many steps, and as many stages as they need.
@@ -33,7 +32,7 @@ pub(super) enum Integrator {
 }
 
 impl Integrator {
-    pub(super) fn by_id(id: &str, steps: u32) -> Result<Self, String> {
+    pub(in super::super) fn by_id(id: &str, steps: u32) -> Result<Self, String> {
         let stepped = |integrator| match steps {
             0 => Err(format!("'{id}' needs at least one step: steps = 0")),
             _ => Ok(integrator),
@@ -53,7 +52,7 @@ impl Integrator {
     }
 
     /// Its name, with the steps where these are given.
-    pub(super) fn id(self) -> String {
+    pub(in super::super) fn id(self) -> String {
         match self {
             Self::Explicit(method) => method.id(),
             Self::Chebyshev(steps) => format!("rkc-{steps}"),
@@ -119,7 +118,7 @@ pub(super) fn compute(
     courant: f64,
 ) -> Result<Found, TaskError> {
     let problem = &configuration.problem;
-    let operator = operators::by_id(&configuration.scheme)?.operator()?;
+    let operator = super::laplacian(&configuration.scheme)?;
     let program = Program::new(&operator, kernel, 2)?;
     let heat = problem.discretise(&program)?;
     let steady_error = match configuration.steady {
@@ -170,9 +169,9 @@ pub(super) fn compute(
 }
 
 /// Steps, products with the matrix, and the solution, or why it was stopped.
-type Integrated = (u64, u64, Result<Vec<f64>, String>);
+pub(in super::super) type Integrated = (u64, u64, Result<Vec<f64>, String>);
 
-fn integrate(
+pub(in super::super) fn integrate(
     heat: &HeatSystem,
     integrator: Integrator,
     time: f64,
