@@ -37,6 +37,8 @@ pub(super) enum Command {
     Symbol(SymbolArguments),
     /// Derive the orders of moment sums: exponents, amplitudes and zero crossings on a lattice, exponents under disorder
     Orders(OrdersArguments),
+    /// Name the operator, kernel and R/Δ of least cost that meet a tolerance
+    Advise(AdviseArguments),
     /// List what can be named in a scene
     List(ListArguments),
 }
@@ -280,6 +282,37 @@ pub(super) struct SymbolArguments {
     /// A scene whose `[[define.kernel]]` and `[[define.lattice]]` may be named as well
     #[arg(long, value_name = "SCENE")]
     pub(super) define: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AdviseArguments {
+    /// Laplacians of a scalar (the default)
+    #[arg(long, conflicts_with = "gradient")]
+    pub(super) laplacian: bool,
+    /// Gradients of a scalar
+    #[arg(long)]
+    pub(super) gradient: bool,
+    /// The largest relative error
+    #[arg(long, allow_hyphen_values = true)]
+    pub(super) tolerance: f64,
+    /// MODEL:AMPLITUDE[,key=value…]; without it, the lattice itself
+    #[arg(long, value_name = "MODEL:AMPLITUDE")]
+    pub(super) disorder: Option<String>,
+    /// Wavelength of the field over Δ
+    #[arg(long, default_value_t = 100.0, allow_hyphen_values = true)]
+    pub(super) wavelength: f64,
+    /// The most neighbours
+    #[arg(long, value_name = "N")]
+    pub(super) budget_neighbours: Option<usize>,
+    /// D: the line, the square or the simple cubic lattice
+    #[arg(long = "dim", value_name = "D")]
+    pub(super) dimension: Option<u8>,
+    /// Id of the lattice
+    #[arg(long)]
+    pub(super) lattice: Option<String>,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,

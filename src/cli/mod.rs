@@ -1,5 +1,6 @@
 //! The command line: arguments in, events drawn, exit code out.
 
+mod advise;
 mod arguments;
 mod catalogue;
 mod diagnostic;
@@ -42,6 +43,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Rms(arguments) => rms::rms(arguments),
         Command::Symbol(arguments) => symbol::symbol(arguments),
         Command::Orders(arguments) => orders::orders(arguments),
+        Command::Advise(arguments) => advise::advise(arguments),
         Command::List(list) => catalogue::list(list),
     };
     match done {

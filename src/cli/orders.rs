@@ -23,7 +23,7 @@ const FARTHEST: f64 = 64.0;
 pub(super) fn orders(arguments: &OrdersArguments) -> Result<Exit, Failure> {
     let fault = |error: &dyn std::fmt::Display| Failure::Arguments(error.to_string());
     let kernel = named(&arguments.kernel, &[])?;
-    let lattice = chosen_lattice(arguments)?;
+    let lattice = lattice_for(arguments.lattice.as_deref(), arguments.dimension)?;
     let moments = moments_named(&arguments.moments)?;
     let (from, to) = (arguments.from, arguments.to);
     if !(from > 0.0 && from < to && to <= FARTHEST) {
@@ -43,9 +43,10 @@ pub(super) fn orders(arguments: &OrdersArguments) -> Result<Exit, Failure> {
     Ok(Exit::AsExpected)
 }
 
-fn chosen_lattice(arguments: &OrdersArguments) -> Result<Lattice, Failure> {
+/// The lattice of this id, or the simplest one of the dimension; if both are given they must agree.
+pub(super) fn lattice_for(id: Option<&str>, dimension: Option<u8>) -> Result<Lattice, Failure> {
     let fault = |error: &dyn std::fmt::Display| Failure::Arguments(error.to_string());
-    match (&arguments.lattice, arguments.dimension) {
+    match (id, dimension) {
         (None, None) => Err(Failure::Arguments("say where: --dim 1, 2 or 3, or --lattice ID".into())),
         (None, Some(d)) => match LATTICES.get(usize::from(d).wrapping_sub(1)) {
             Some(id) => lattice_by_id(id).map_err(|error| fault(&error)),

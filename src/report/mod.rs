@@ -1,5 +1,6 @@
 //! One record; JSON is the source, every other form is a view of it.
 
+mod advise;
 mod assemble;
 mod expansion;
 mod layout;
@@ -12,6 +13,7 @@ mod table;
 mod write;
 
 pub use crate::record::*;
+pub use advise::advice_text;
 pub use assemble::assemble;
 pub use expansion::{
     ConservationReport, ExpansionReport, OrderReport, TermReport, Vanishes, expansion_report,

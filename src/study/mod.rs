@@ -3,6 +3,7 @@
 //! Emits events and prints nothing. The caller chooses threads (by the rayon pool it calls from), cancellation and the
 //! sink of events. What a study returns is a pure function of the scene and its stored blocks.
 
+mod advise;
 mod analysis;
 mod define_lattice;
 mod derive;
@@ -19,6 +20,7 @@ mod store;
 mod survey;
 mod tables;
 
+pub use advise::{Advice, Candidate, Request as AdviceRequest, advise};
 pub use analysis::Analysis;
 pub use derive::DerivedColumn;
 pub use error::StudyError;
