@@ -22,6 +22,8 @@ pub struct Storage {
     pub reference: f64,
     /// The field is rounded to multiples of this; 0 if it is not.
     pub quantum: f64,
+    /// By how much the scale of the field exceeds the K_x that errors are normalised with.
+    pub excess: f64,
 }
 
 /// What is taken: operator and field.
@@ -60,7 +62,9 @@ struct Stored<'a, T> {
     /// ξ, and the stored fields: constant and linear.
     fields: [Vec<T>; 2],
     size: T,
+    /// Of the field, and the K_x of the norm.
     scale: T,
+    norm: T,
 }
 
 fn number<T: Float>(value: f64) -> T {
@@ -90,7 +94,8 @@ impl<'a, T: Float> Stored<'a, T> {
                 value
             }
         };
-        let (length, shift, k) = (number::<T>(size), number::<T>(shift), number::<T>(scale));
+        let (length, shift, k) = (number::<T>(size), number::<T>(shift), number::<T>(scale + storage.excess));
+        // With an excess the field is another one, and its own slope is taken off: what is left is the error of the operator.
         let constant = vec![written(k); places.len()];
         let linear = places.iter().map(|x| written(k * ((x[0] - shift) / length))).collect();
         let mut stored = Self {
@@ -105,6 +110,7 @@ impl<'a, T: Float> Stored<'a, T> {
             fields: [constant, linear],
             size: length,
             scale: k,
+            norm: number(scale),
         };
         stored.volumes = (0..stored.places.len())
             .map(|i| {
@@ -150,12 +156,13 @@ impl<'a, T: Float> Stored<'a, T> {
                 sums[3] = sums[3] + two * (d + two) / pi * across * gradient;
                 sums[4] = sums[4] - two * volume * g * square * per_square * difference;
             }
-            let slope = self.scale / self.size;
+            let exact = self.scale / self.size;
+            let slope = self.norm / self.size;
             let curvature = slope / self.size;
             let errors = [
                 sums[0] / slope,
-                (sums[1] - slope) / slope,
-                (sums[2] - slope) / slope,
+                (sums[1] - exact) / slope,
+                (sums[2] - exact) / slope,
                 sums[3] / curvature,
                 sums[4] / curvature,
             ];

@@ -4,6 +4,7 @@ use super::super::scene::parse;
 use super::super::source::{SceneError, SceneText};
 use super::super::tables::StudyTable;
 use super::Survey;
+use super::chaussonnet::ChaussonnetTable;
 use crate::claim::Verdict;
 use crate::names::nearest;
 use schemars::{JsonSchema, Schema};
@@ -29,7 +30,7 @@ struct Kind {
     schema: fn() -> Schema,
 }
 
-const KINDS: &[Kind] = &[];
+const KINDS: &[Kind] = &[kind::<ChaussonnetTable>("chaussonnet")];
 
 /// The names of the kinds, and the schemas of their scenes.
 pub fn survey_kinds() -> impl Iterator<Item = (&'static str, Schema)> {
