@@ -67,7 +67,8 @@ struct Statement {
 
 /// The statement with this id, which is one of [`ids`].
 pub fn assertion(id: &str) -> Assertion {
-    all().into_iter()
+    all()
+        .into_iter()
         .find(|assertion| assertion.id == id)
         .unwrap_or_else(|| unreachable!("'{id}' is not among the statements of the paper"))
 }
@@ -110,8 +111,7 @@ fn of_fit(fit: &PublishedFit) -> [Assertion; 4] {
     };
     let error = if fit.field.starts_with('F') { "Λ" } else { "Ω" };
     let name = format!("{error}_x({}) on {}", fit.operator, fit.field);
-    let power =
-        |of, value| Published::Exponent { of, value, margin: EXPONENT };
+    let power = |of, value| Published::Exponent { of, value, margin: EXPONENT };
     [
         assertion("h", format!("{name} ~ h^{}", fit.h), power(Variable::H, fit.h)),
         assertion("eta", format!("{name} ~ η^{}", fit.eta), power(Variable::Displacement, fit.eta)),
@@ -280,12 +280,7 @@ fn gradients() -> Vec<Statement> {
             "gradient/falls-with-scale",
             "§IV.E.3, Fig. 8c",
             "Λ decreases slightly as K_x increases.",
-            Published::Trend {
-                of: "ln Λ",
-                against: "ln K_x",
-                direction: Direction::Falling,
-                margin: 0.02,
-            },
+            Published::Trend { of: "ln Λ", against: "ln K_x", direction: Direction::Falling, margin: 0.02 },
         ),
         s(
             "gradient/factor-2-constant",
@@ -299,12 +294,7 @@ fn gradients() -> Vec<Statement> {
             "G+ deviates twice as much as G0 on a linear field.",
             ratio(2.0),
         ),
-        s(
-            "gradient/factor-2-quadratic",
-            "§IV.E.5",
-            "Λ²(G+) ≈ 2 Λ²(G0) on a quadratic field.",
-            ratio(2.0),
-        ),
+        s("gradient/factor-2-quadratic", "§IV.E.5", "Λ²(G+) ≈ 2 Λ²(G0) on a quadratic field.", ratio(2.0)),
         s(
             "gradient/minus-constant",
             "§IV.A, §IV.E.3",
@@ -315,7 +305,12 @@ fn gradients() -> Vec<Statement> {
             "gradient/minus-h",
             "§IV.E.4",
             "h has no influence on G−.",
-            Published::Trend { of: "ln Λ", against: "ln h", direction: Direction::Constant, margin: EXPONENT },
+            Published::Trend {
+                of: "ln Λ",
+                against: "ln h",
+                direction: Direction::Constant,
+                margin: EXPONENT,
+            },
         ),
         s(
             "gradient/minus-small-eta",
@@ -335,12 +330,7 @@ fn gradients() -> Vec<Statement> {
             "Errors on a quadratic field are slightly lower than on a linear one.",
             less("Λ²", "Λ¹"),
         ),
-        s(
-            "gradient/momentum-plus",
-            "§IV.A",
-            "G+ conserves linear momentum: f_ab = −f_ba.",
-            Published::Zero,
-        ),
+        s("gradient/momentum-plus", "§IV.A", "G+ conserves linear momentum: f_ab = −f_ba.", Published::Zero),
         s(
             "gradient/momentum-others",
             "§IV.A, §IV.F",
@@ -377,12 +367,7 @@ fn laplacians() -> Vec<Statement> {
             "Without disorder both Laplacians are exact on a linear field.",
             Published::Zero,
         ),
-        s(
-            "laplacian/MEA-y",
-            "§V.D.2, Fig. 12",
-            "The y component of MEA is zero.",
-            Published::Zero,
-        ),
+        s("laplacian/MEA-y", "§V.D.2, Fig. 12", "The y component of MEA is zero.", Published::Zero),
         s(
             "laplacian/MCG-y",
             "§V.D.2, Fig. 12",
@@ -405,12 +390,7 @@ fn laplacians() -> Vec<Statement> {
             "laplacian/falls-with-scale",
             "§V.D.4, §V.D.5",
             "Ω decreases slightly as K_x increases.",
-            Published::Trend {
-                of: "ln Ω",
-                against: "ln K_x",
-                direction: Direction::Falling,
-                margin: 0.02,
-            },
+            Published::Trend { of: "ln Ω", against: "ln K_x", direction: Direction::Falling, margin: 0.02 },
         ),
         s(
             "laplacian/18-percent",
@@ -478,12 +458,7 @@ fn laplacians() -> Vec<Statement> {
             "On a quadratic field proportionality to 1/h is lost for a strong disorder, not for a weak one.",
             greater("|1 + d ln Ω²/d ln h| at the largest η", "that at the lowest η"),
         ),
-        s(
-            "laplacian/angular-MCG",
-            "§V.A.1",
-            "MCG conserves angular momentum.",
-            Published::Zero,
-        ),
+        s("laplacian/angular-MCG", "§V.A.1", "MCG conserves angular momentum.", Published::Zero),
         s(
             "laplacian/angular-MEA",
             "§V.A.2",

@@ -62,9 +62,7 @@ pub fn neighbour_distance(shape: Shape, dimension: usize, eta: f64) -> Option<Ne
 
 /// Unit vectors with weights of sum 1.
 fn directions(shape: Shape, dimension: usize) -> Option<Vec<([f64; 3], f64)>> {
-    let around = |count: usize| {
-        (0..count).map(move |n| libm::sincos(TAU * (n as f64 + 0.5) / count as f64))
-    };
+    let around = |count: usize| (0..count).map(move |n| libm::sincos(TAU * (n as f64 + 0.5) / count as f64));
     let (azimuths, polar) = SPHERE;
     let even = 1.0 / azimuths as f64;
     Some(match (shape, dimension) {

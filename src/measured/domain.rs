@@ -30,7 +30,9 @@ pub enum DomainError {
     #[error("an operator on the domain: {0}")]
     Program(#[from] ProgramError),
     /// There is nothing to take errors on.
-    #[error("a domain of {size:e} m holds no inner particle at Δ = {dx:e} m: choose a larger domain or a smaller h")]
+    #[error(
+        "a domain of {size:e} m holds no inner particle at Δ = {dx:e} m: choose a larger domain or a smaller h"
+    )]
     Empty {
         /// L.
         size: f64,
@@ -66,6 +68,8 @@ pub struct Domain {
     motion: Motion,
     dx: f64,
     support: f64,
+    /// Of the inner region, in Δ.
+    corner: [f64; 3],
     sites: Vec<Site>,
     /// Whether the particle of each site moves.
     moves: Vec<bool>,
@@ -94,30 +98,38 @@ impl Domain {
         let support = spec.h * crate::exact::rational_to_f64(spec.kernel.support_over_h());
         let half = 0.5 * spec.size / dx;
         let layer = spec.layer * spec.h_over_dx;
-        let within = |site: &Site, half: f64| {
-            // The lower faces belong to the box and the upper ones do not.
-            site.position[..dimension].iter().all(|x| -half <= *x && *x < half)
+        // The corner stands half-way between two planes of sites, so that none has ξ = 0.
+        let units = spec.lattice.axis_units();
+        let corner: [f64; 3] = std::array::from_fn(|a| {
+            if a < dimension { ((-half / units[a]).floor() + 0.5) * units[a] } else { 0.0 }
+        });
+        let within = |site: &Site, margin: f64| {
+            (0..dimension).all(|a| {
+                let x = site.position[a] - corner[a];
+                -margin <= x && x < 2.0 * half + margin
+            })
         };
-        let whole = half + 2.0 * layer;
-        let mut sites = spec.lattice.sites_within(whole * (dimension as f64).sqrt());
+        let whole = 2.0 * layer;
+        let mut sites = spec.lattice.sites_within((half + whole + 1.0) * (dimension as f64).sqrt());
         sites.retain(|site| within(site, whole));
         let still = spec.disorder.entry().moves == Moves::Nothing;
-        let moves = sites.iter().map(|site| !still && within(site, half + layer)).collect();
-        let inner: Vec<usize> = (0..sites.len()).filter(|place| within(&sites[*place], half)).collect();
+        let moves = sites.iter().map(|site| !still && within(site, layer)).collect();
+        let inner: Vec<usize> = (0..sites.len()).filter(|place| within(&sites[*place], 0.0)).collect();
         if inner.is_empty() {
             return Err(DomainError::Empty { size: spec.size, dx });
         }
         let side = (2.0 * half / TILE).floor().max(1.0);
         let tile = |place: &usize| {
-            sites[*place].position[..dimension].iter().rev().fold(0, |tile, x| {
-                let along = ((x + half) / (2.0 * half) * side).floor().clamp(0.0, side - 1.0);
+            (0..dimension).rev().fold(0, |tile, a| {
+                let x = sites[*place].position[a] - corner[a];
+                let along = (x / (2.0 * half) * side).floor().clamp(0.0, side - 1.0);
                 tile * side as usize + along as usize
             })
         };
         let tiles = inner.iter().map(tile).collect();
         let tile_count = (side as usize).pow(dimension as u32);
         let motion = spec.disorder.motion();
-        Ok(Self { spec, motion, dx, support, sites, moves, inner, tiles, tile_count })
+        Ok(Self { spec, motion, dx, support, corner, sites, moves, inner, tiles, tile_count })
     }
 
     /// Δ in metres.
@@ -164,11 +176,7 @@ impl Domain {
     fn place(&self, site: &Site, displacement: [f64; 3]) -> [f64; 3] {
         let dimension = self.spec.lattice.dimension();
         std::array::from_fn(|a| {
-            if a < dimension {
-                (site.position[a] + displacement[a]) * self.dx + 0.5 * self.spec.size
-            } else {
-                0.0
-            }
+            if a < dimension { (site.position[a] - self.corner[a] + displacement[a]) * self.dx } else { 0.0 }
         })
     }
 

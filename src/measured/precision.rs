@@ -27,7 +27,8 @@ pub struct Storage {
 }
 
 /// What is taken: operator and field.
-pub const TAKEN: [(&str, &str); 5] = [("G0", "F0"), ("G0", "F1"), ("G-", "F1"), ("MCG-pi", "U1"), ("MEA", "U1")];
+pub const TAKEN: [(&str, &str); 5] =
+    [("G0", "F0"), ("G0", "F1"), ("G-", "F1"), ("MCG-pi", "U1"), ("MEA", "U1")];
 
 /// Root mean squares over the inner particles of the x components of λ and ω, Eqs. (23) and (35), in the order of [`TAKEN`].
 ///

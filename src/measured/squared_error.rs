@@ -57,8 +57,7 @@ impl SquaredError {
         if self.tiles < 2 || mean == 0.0 {
             return 0.0;
         }
-        let scatter =
-            self.tile_square - 2.0 * mean * self.tile_cross + mean * mean * self.tile_count_square;
+        let scatter = self.tile_square - 2.0 * mean * self.tile_cross + mean * mean * self.tile_count_square;
         let of_mean = (scatter.max(0.0) * tiles / (tiles - 1.0)).sqrt() / self.count as f64;
         0.5 * of_mean / mean.sqrt()
     }

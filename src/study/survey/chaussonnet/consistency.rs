@@ -33,13 +33,7 @@ fn value(found: &Results<'_>, lattice: &'static str, eta: f64, h: f64, name: &st
     Some((squares.rms(), squares.rms_error()))
 }
 
-fn measured(
-    found: &Results<'_>,
-    lattice: &'static str,
-    eta: f64,
-    h: f64,
-    name: &str,
-) -> Option<Measured> {
+fn measured(found: &Results<'_>, lattice: &'static str, eta: f64, h: f64, name: &str) -> Option<Measured> {
     value(found, lattice, eta, h, name).map(interval)
 }
 
@@ -48,8 +42,7 @@ fn regular(found: &Results<'_>, report: &mut Report) {
     for lattice in LATTICES {
         for name in ERRORS.into_iter().chain([PRINTED]) {
             let largest = |h: &f64| value(found, lattice, 0.0, *h, name).map(|(rms, _)| rms);
-            let largest =
-                found.table.consistency_h_m.iter().filter_map(largest).fold(0.0_f64, f64::max);
+            let largest = found.table.consistency_h_m.iter().filter_map(largest).fold(0.0_f64, f64::max);
             // r_b reaches to the far corner: its terms are that much larger.
             let floor = if name == PRINTED { 1e3 * ROUNDING } else { ROUNDING };
             let derived = found.model(lattice).filter(|_| name != PRINTED).map(|model| Observed::Zero {
@@ -123,7 +116,8 @@ fn against_eta(found: &Results<'_>, report: &mut Report) -> Result<(), TaskError
             report.fits.push(fit);
             let derived = match found.model(lattice) {
                 Some(model) => {
-                    let derived = |eta: &f64| (*eta, model.consistency(name, *eta, found.table.h_over_dx), 0.0);
+                    let derived =
+                        |eta: &f64| (*eta, model.consistency(name, *eta, found.table.h_over_dx), 0.0);
                     let points: Vec<_> = found.table.eta.iter().map(derived).collect();
                     Some(Observed::Number(slope(ladder("eta, derived"), &points)?.0))
                 }

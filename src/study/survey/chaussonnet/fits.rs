@@ -45,16 +45,22 @@ fn coefficients(found: &Results<'_>, report: &mut Report) -> Result<(), TaskErro
             continue;
         }
         let measured = four_coefficients(&points)?;
-        let derived =
-            if derived_points.len() == points.len() { Some(four_coefficients(&derived_points)?) } else { None };
+        let derived = if derived_points.len() == points.len() {
+            Some(four_coefficients(&derived_points)?)
+        } else {
+            None
+        };
         let id = |what: &str| format!("chaussonnet-fit-{}/{what}", published.equation);
         let more = [("points", points.len().into())];
         let case = || found.case("square", None, &more);
         for (place, what) in ["h", "eta", "field-scale"].into_iter().enumerate() {
             let number = |fit: &FourCoefficients| Observed::Number(fit.exponents[place]);
             // The coefficient of a law fitted to derived values is what its curvature makes of it: no interval.
-            let of_derived =
-                |fit: &FourCoefficients| Observed::Number(Measured::exactly(fit.exponents[place].value));
+            let of_derived = |fit: &FourCoefficients| {
+                let exponent = fit.exponents[place].value;
+                let exponent = if exponent.abs() < 1e-12 { 0.0 } else { exponent };
+                Observed::Number(Measured::exactly(exponent))
+            };
             let derived = derived.as_ref().map(of_derived);
             let measured = Some(number(&measured));
             report.claims.push(entry(&assertion(&id(what)), case(), derived, measured, Vec::new()));
@@ -69,6 +75,44 @@ fn coefficients(found: &Results<'_>, report: &mut Report) -> Result<(), TaskErro
         rows.extend(table(published, &measured, derived.as_ref()));
     }
     report.tables.insert("fits".into(), rows);
+    windows(found, report)
+}
+
+/// The exponent of η in Eq. (29) by the range of η that is fitted.
+#[derive(Serialize)]
+struct Window {
+    eta_from: f64,
+    eta_to: f64,
+    measured: f64,
+    without_the_lattice: Option<f64>,
+    published: f64,
+}
+
+/// G− on a linear field has a floor, the lattice's own B⁻¹ − I, and grows faster than η where η is large: which exponent a fit
+/// gives depends on where it begins.
+fn windows(found: &Results<'_>, report: &mut Report) -> Result<(), TaskError> {
+    let points = all_points(found, "G-/F1/x", true);
+    let regular = found.model("square").map(|model| model.component("G-[1]", 0).regular);
+    let mut rows = Vec::new();
+    for from in &found.table.eta[..found.table.eta.len() - 1] {
+        let window: Vec<[f64; 4]> = points.iter().copied().filter(|point| point[1] >= *from).collect();
+        if window.len() < 8 {
+            continue;
+        }
+        let without: Option<Vec<[f64; 4]>> = regular.map(|regular| {
+            let less = |p: &[f64; 4]| [p[0], p[1], p[2], (p[3] * p[3] - regular * regular).max(0.0).sqrt()];
+            window.iter().map(less).filter(|point| point[3] > 0.0).collect()
+        });
+        let without = without.map(|points| four_coefficients(&points)).transpose()?;
+        rows.push(table_row(&Window {
+            eta_from: *from,
+            eta_to: found.table.largest_eta(),
+            measured: significant(four_coefficients(&window)?.exponents[1].value, 5),
+            without_the_lattice: without.map(|fit| significant(fit.exponents[1].value, 5)),
+            published: FITS[4].eta,
+        }));
+    }
+    report.tables.insert("fit_29_by_window".into(), rows);
     Ok(())
 }
 
@@ -102,7 +146,13 @@ fn table(
     let [h, eta, scale] = measured.exponents;
     let of_h = if published.equation == 29 { 0.0 } else { -1.0 };
     vec![
-        row("a1 (m^-a2)", published.prefactor, measured.prefactor, derived.map(|fit| fit.prefactor.value), None),
+        row(
+            "a1 (m^-a2)",
+            published.prefactor,
+            measured.prefactor,
+            derived.map(|fit| fit.prefactor.value),
+            None,
+        ),
         row("a2 (h)", published.h, h, alike(0), Some(of_h)),
         row("a3 (η)", published.eta, eta, alike(1), Some(1.0)),
         row("a4 (K_x)", published.scale, scale, alike(2), Some(0.0)),
@@ -180,8 +230,7 @@ fn domain_size(found: &Results<'_>, report: &mut Report) {
     let mut direct = Vec::new();
     for published in FITS.iter().filter(|fit| fit.operator != "G-" && fit.field != "F1") {
         let c = coefficient(model, published, false);
-        let size =
-            sizes(found, |h, eta| Some(published.value(h, eta, 1.0) * per_eta(h, eta) / c));
+        let size = sizes(found, |h, eta| Some(published.value(h, eta, 1.0) * per_eta(h, eta) / c));
         direct.extend(size);
         enter(format!("Eq. ({})", published.equation), size);
     }
@@ -218,8 +267,7 @@ fn domain_size(found: &Results<'_>, report: &mut Report) {
         let Some(model) = found.model_of(lattice, false, rule) else { continue };
         for published in FITS.iter().filter(|fit| fit.operator != "G-" && fit.field != "F1") {
             let c = coefficient(model, published, without_pi);
-            let size =
-                sizes(found, |h, eta| Some(published.value(h, eta, 1.0) * per_eta(h, eta) / c));
+            let size = sizes(found, |h, eta| Some(published.value(h, eta, 1.0) * per_eta(h, eta) / c));
             rows.push(table_row(&Assumption {
                 fit: format!("Eq. ({})", published.equation),
                 assumption,

@@ -146,10 +146,18 @@ fn lattices(found: &Results<'_>, report: &mut Report) -> Result<(), TaskError> {
                     }
                 }
                 if lattice != "square" {
-                    let id = if lattice == "hexagonal" { "gradient/similar-in-2d" } else { "gradient/3d-lower" };
+                    let id =
+                        if lattice == "hexagonal" { "gradient/similar-in-2d" } else { "gradient/3d-lower" };
                     let square = At { lattice: "square", ..at };
                     let (derived, measured) = ratios(found, (at, &name), (square, &name));
-                    judge(report, id, found.case(lattice, Some(at.eta), &more), derived, measured, Vec::new());
+                    judge(
+                        report,
+                        id,
+                        found.case(lattice, Some(at.eta), &more),
+                        derived,
+                        measured,
+                        Vec::new(),
+                    );
                 }
             }
         }
@@ -191,7 +199,8 @@ fn constant(found: &Results<'_>, report: &mut Report) -> Result<(), TaskError> {
             let largest = largest.iter().filter_map(|(_, at)| found.rms(*at, &name)).map(|(y, _)| y);
             let largest = largest.fold(0.0, f64::max);
             let case = found.case(lattice, Some(0.0), &[("operator", text(operator))]);
-            let derived = Some(Observed::Zero { largest: found.derived(at, &name).unwrap_or(0.0), floor: ROUNDING });
+            let derived =
+                Some(Observed::Zero { largest: found.derived(at, &name).unwrap_or(0.0), floor: ROUNDING });
             let measured = Some(Observed::Zero { largest, floor: ROUNDING });
             judge(report, "gradient/regular-constant", case, derived, measured, Vec::new());
         }

@@ -1,6 +1,6 @@
 //! §V: Laplacians, Figs. 11–14, and what 1/π stands for.
 
-use super::gradients::{Along, judge, lines, ratios, reference, scale_exponent, slopes, all_points};
+use super::gradients::{Along, all_points, judge, lines, ratios, reference, scale_exponent, slopes};
 use super::power::mean;
 use super::results::{At, Results, axis, figure};
 use super::{KERNEL, LATTICES, TaskError};
@@ -74,7 +74,8 @@ fn factors(found: &Results<'_>, report: &mut Report) -> Result<(), TaskError> {
             judge(report, "laplacian/prefactor", case, derived, measured.flatten(), Vec::new());
         }
         if lattice != "hexagonal" {
-            for (of, theta_square) in [("continuum, θ² = 0.01 h²", THETA_SQUARE), ("continuum, θ = 0", 0.0)] {
+            for (of, theta_square) in [("continuum, θ² = 0.01 h²", THETA_SQUARE), ("continuum, θ = 0", 0.0)]
+            {
                 let factor = 3.0 * regularisation_factor(&kernel, dimension.into(), theta_square);
                 let case = Case {
                     lattice: None,

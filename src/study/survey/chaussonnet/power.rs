@@ -38,7 +38,11 @@ pub(super) fn four_coefficients(points: &[[f64; 4]]) -> Result<FourCoefficients,
     let prefactor = interval(0)?;
     let exp = |x: f64| significant(libm::exp(x), DIGITS);
     Ok(FourCoefficients {
-        prefactor: Measured { value: exp(prefactor.value), low: exp(prefactor.low), high: exp(prefactor.high) },
+        prefactor: Measured {
+            value: exp(prefactor.value),
+            low: exp(prefactor.low),
+            high: exp(prefactor.high),
+        },
         exponents: [interval(1)?, interval(2)?, interval(3)?].map(rounded),
         residual: significant(fit.residual_sd, DIGITS),
         points: points.len(),
@@ -76,9 +80,8 @@ pub(super) fn slope(ladder: Ladder<'_>, points: &[(f64, f64, f64)]) -> Result<(M
     let design: Vec<Vec<f64>> = points.iter().map(|(x, ..)| vec![1.0, libm::log(*x)]).collect();
     let y: Vec<f64> = points.iter().map(|(_, y, _)| libm::log(*y)).collect();
     let fit = multilinear(&design, &y, None)?;
-    let [intercept, slope] = [fit.interval(0, COVERAGE)?, fit.interval(1, COVERAGE)?].map(|interval| {
-        rounded(Measured { value: interval.value, low: interval.low, high: interval.high })
-    });
+    let [intercept, slope] = [fit.interval(0, COVERAGE)?, fit.interval(1, COVERAGE)?]
+        .map(|interval| rounded(Measured { value: interval.value, low: interval.low, high: interval.high }));
     let estimate = |m: Measured| Estimate::float(m.value, m.low, m.high, Source::Fit);
     let axis = |name: &str, unit: &str| Axis { name: name.into(), unit: unit.into(), log: true };
     let entry = Fit {

@@ -145,7 +145,10 @@ impl<'a> Results<'a> {
             lattice: Some(lattice.into()),
             disorder: eta.map(|eta| self.table.disorder(lattice, eta)),
             volume_rule: RULE.id().into(),
-            more: more.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect::<BTreeMap<_, _>>(),
+            more: more
+                .iter()
+                .map(|(key, value)| ((*key).to_owned(), value.clone()))
+                .collect::<BTreeMap<_, _>>(),
         }
     }
 }
