@@ -78,8 +78,7 @@ fn factors(found: &Results<'_>, report: &mut Report) -> Result<(), TaskError> {
             {
                 let factor = 3.0 * regularisation_factor(&kernel, dimension.into(), theta_square);
                 let case = Case {
-                    lattice: None,
-                    source: "continuum".into(),
+                    lattice: Some("continuum".into()),
                     ..found.case(lattice, None, &[("limit", text(of))])
                 };
                 let derived = Some(Observed::Number(Measured::exactly(factor)));
