@@ -9,6 +9,8 @@
 mod bad_files;
 #[path = "cli/bad_scenes.rs"]
 mod bad_scenes;
+#[path = "cli/chaussonnet.rs"]
+mod chaussonnet;
 #[path = "cli/exit_codes.rs"]
 mod exit_codes;
 #[path = "cli/expand.rs"]

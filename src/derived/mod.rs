@@ -7,6 +7,8 @@
 //! - `arrangement`: particles with rational places, on which what is left is shown not to vanish.
 //! - `jet`, `modes`, `displaced`, `rms`: the error on displaced particles, differentiated with respect to each of them.
 //! - `quadrature`, `expectation`, `finite`: moment sums averaged over the whole law of the displacements.
+//! - `neighbour_distance`: how far apart neighbours are under canonical disorder.
+//! - `laplacian_factor`: by what bare Laplacians multiply u″ in the continuum.
 //! - `conserve`: which sums are conserved, whatever the field.
 //! - `orders`: moment sums as powers of Δ/h and of the displacement.
 
@@ -22,7 +24,9 @@ mod expansion;
 mod expectation;
 mod finite;
 mod jet;
+mod laplacian_factor;
 mod modes;
+mod neighbour_distance;
 mod normal;
 pub mod orders;
 mod quadrature;
@@ -35,6 +39,8 @@ pub use conserve::{Conservation, Conserved};
 pub use error::DeriveError;
 pub use expansion::{Expansion, MOST_ORDER, OrderTerms, VanishingTerm};
 pub use finite::finite;
+pub use laplacian_factor::regularisation_factor;
+pub use neighbour_distance::{NeighbourDistance, neighbour_distance};
 pub use orders::{
     Amplitude, CoefficientOrder, ComponentOrder, Contribution, Crossing, Deviation, DisorderOrder,
     DisorderTerm, Displaced, Envelope, RegularOrder, Source, Term,

@@ -4,18 +4,22 @@
 //! never the derived column.
 
 mod coefficient;
+mod domain;
 mod double_double;
 mod error;
 mod error_sample;
 pub mod fit;
+pub mod precision;
 mod program;
 mod regular;
 mod sample;
+mod squared_error;
 mod stencil;
 mod symbol;
 mod tensor;
 pub mod window;
 
+pub use domain::{Domain, DomainError, DomainSpec, Laid};
 pub use error::{FitError, Input};
 pub use error_sample::{SampledError, sampled_error};
 pub use program::{Fields, Program, ProgramError};
@@ -24,5 +28,6 @@ pub use sample::{
     CLOSEST, MomentStatistics, SampleBlock, SampleError, SampleSpec, Sampler, Summary, is_precise,
     neighbourhood_radius, summarise,
 };
+pub use squared_error::{SquaredError, applied, mean_neighbours};
 pub use stencil::{Degeneracy, Stencil, StencilEntry, StencilError, stencil};
 pub use symbol::{Symbol, SymbolError, SymbolValue};

@@ -4,6 +4,7 @@ use super::super::scene::parse;
 use super::super::source::{SceneError, SceneText};
 use super::super::tables::StudyTable;
 use super::Survey;
+use super::chaussonnet::ChaussonnetTable;
 use crate::claim::Verdict;
 use crate::names::nearest;
 use schemars::{JsonSchema, Schema};
@@ -29,7 +30,11 @@ struct Kind {
     schema: fn() -> Schema,
 }
 
-const KINDS: &[Kind] = &[kind::<super::heat::Heat>("heat"), kind::<super::stiff::Stiff>("stiff")];
+const KINDS: &[Kind] = &[
+    kind::<ChaussonnetTable>("chaussonnet"),
+    kind::<super::heat::Heat>("heat"),
+    kind::<super::stiff::Stiff>("stiff"),
+];
 
 /// The names of the kinds, and the schemas of their scenes.
 pub fn survey_kinds() -> impl Iterator<Item = (&'static str, Schema)> {
