@@ -118,7 +118,12 @@ impl HeatStatement {
                 format!(
                     "the conservation error of {scheme} follows the same pattern as the other norms (h = {h}Δ)"
                 ),
-                Published::Relation { left: "slope of EC", sign: Sign::Equal, right: "slope of L2" },
+                Published::Trend {
+                    of: "EC over L2",
+                    against: "Δ",
+                    direction: Direction::Constant,
+                    margin: 0.25,
+                },
             ),
             Self::EightNeighbours => statement(
                 "eight-neighbours".into(),

@@ -145,10 +145,11 @@ impl<'a> Bench<'a> {
             HeatStatement::SecondOrderS4(h) => at_regular(number(self.rate("S4", h, 0.0, L2))),
             HeatStatement::UnityS3Irregular(h) => irregular(&|e| number(self.rate("S3", h, e, L2))),
             HeatStatement::SecondOrderS4Irregular(h) => irregular(&|e| number(self.rate("S4", h, e, L2))),
-            HeatStatement::SamePattern(scheme, h) => at_regular((|| {
-                let left = self.rate(scheme, h, 0.0, EC)?;
-                Some(Observed::Sides { left, right: self.rate(scheme, h, 0.0, L2)? })
-            })()),
+            HeatStatement::SamePattern(scheme, h) => {
+                let points = self.euler(scheme, h, 0.0).into_iter();
+                let points = points.map(|(n, errors)| (1.0 / (n - 1) as f64, errors[EC] / errors[L2]));
+                at_regular(number(slope(&points.collect_vec())))
+            }
             HeatStatement::BestS3Regular => {
                 each_n(0.0, &|n| self.one_against_rest("S3", 2.0, 0.0, n, f64::min, false))
             }
@@ -168,10 +169,12 @@ impl<'a> Bench<'a> {
                     Some((case, Observed::Sides { left: exactly(ratio), right: exactly(100.0) }))
                 })
                 .collect(),
-            HeatStatement::CheapAndBetter => each_n(0.0, &|n| {
-                let ratio = self.at("S3", 3.5, 0.0, n)?[L2] / self.at("S4", 1.5, 0.0, n)?[L2];
-                Some(Observed::Sides { left: exactly(ratio), right: exactly(100.0) })
-            }),
+            HeatStatement::CheapAndBetter => (|| {
+                let ratio = self.at("S3", 3.5, 0.0, largest)?[L2] / self.at("S4", 1.5, 0.0, largest)?[L2];
+                Some((of_n(largest, 0.0), Observed::Sides { left: exactly(ratio), right: exactly(100.0) }))
+            })()
+            .into_iter()
+            .collect(),
             HeatStatement::EightNeighbours => {
                 let found = self.select("S4", 1.5, 0.0, Boundary::CutOff, "euler");
                 let count = found.last().map(|(_, found, _)| Measured::exactly(found.neighbours as f64));
