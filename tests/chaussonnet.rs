@@ -246,7 +246,13 @@ fn distances_of_neighbours() {
 fn published_fits_are_typed_as_printed() {
     for (plus, zero, expected) in [(FITS[1], FITS[0], 0.754_99), (FITS[3], FITS[2], 0.687_34)] {
         let ratio = plus.value(1e-4, 0.01, 1.0) / zero.value(1e-4, 0.01, 1.0);
-        assert!((ratio.ln() - expected).abs() < 2e-5, "({})/({}): {}", plus.equation, zero.equation, ratio.ln());
+        assert!(
+            (ratio.ln() - expected).abs() < 2e-5,
+            "({})/({}): {}",
+            plus.equation,
+            zero.equation,
+            ratio.ln()
+        );
     }
     assert_eq!(all().len(), 53 + 4 * FITS.len());
     assert_eq!(assertion("chaussonnet-fit-29/eta").location, "Eq. (29)");

@@ -39,5 +39,7 @@ fn expectations_are_of_claims_that_exist() {
     let folder = Folder::new();
     let text = "[study]\nkind = \"chaussonnet\"\n\n[expect]\n\"chaussonnet-fit-25/hh\" = \"confirmed\"\n";
     folder.write("bad.toml", text.to_owned());
-    folder.run_to(2, "plan bad.toml").says(&["chaussonnet-fit-25/hh", "the nearest is 'chaussonnet-fit-25/h'"]);
+    folder
+        .run_to(2, "plan bad.toml")
+        .says(&["chaussonnet-fit-25/hh", "the nearest is 'chaussonnet-fit-25/h'"]);
 }
