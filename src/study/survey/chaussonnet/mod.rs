@@ -89,7 +89,7 @@ impl ChaussonnetTable {
             }
         };
         self.h_m.truncate(3);
-        self.h_m_3d.truncate(2);
+        self.h_m_3d.truncate(1);
         ends(&mut self.consistency_h_m);
         if let [first, .., last] = self.field_scales[..] {
             let middle = self.field_scales[self.field_scales.len() / 2];
