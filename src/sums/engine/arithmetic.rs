@@ -110,20 +110,20 @@ pub(super) fn block_of<L: Lanes, const D: usize>(
 fn evaluate<L: Lanes, const D: usize>(task: &Task<'_>, near: &mut Table, length: usize) {
     let (one, inverse_support) = (L::splat(1.0), L::splat(1.0 / task.support));
     let first = D + 1 + task.plan.fields;
+    let wanted = task.plan.radials;
+    let mut near = near.view_mut();
     for at in (0..length).step_by(LANES) {
-        let here = near.at(at);
         let mut square = L::splat(0.0);
         for a in 0..D {
-            let r = L::load(here.of(a));
+            let r = L::load(near.eight(a, at));
             square = if a == 0 { r.mul(r) } else { square.add(r.mul(r)) };
         }
         let x = square.sqrt().mul(inverse_support).min(one);
-        let weight = L::load(here.of(D));
-        let g = task.radial.evaluate::<L>(x, &task.plan.radials);
-        let mut here = near.at_mut(at);
+        let weight = L::load(near.eight(D, at));
+        let g = task.radial.evaluate::<L>(x, &wanted);
         for k in 0..3 {
-            if task.plan.radials[k] {
-                g[k].mul(weight).store(here.of(first + k));
+            if wanted[k] {
+                g[k].mul(weight).store(near.eight(first + k, at));
             }
         }
     }
@@ -181,20 +181,19 @@ fn up_to<L: Lanes, const D: usize, const HIGHEST: usize, const SUMS: usize, cons
     count: usize,
     scratch: &mut Scratch,
 ) {
-    let (near, degrees) = (&scratch.near, pass.degrees);
+    let (near, degrees) = (scratch.near.view(), pass.degrees);
     let g_column = D + 1 + plan.fields + pass.radial;
     let mut at = 0;
     for (particle, end) in scratch.ends.iter().enumerate().take(count) {
         let mut own = [L::splat(0.0); SUMS];
         while at < *end {
-            let here = near.at(at);
             let mut x = [L::splat(0.0); D];
             for a in 0..D {
-                x[a] = L::load(here.of(a));
+                x[a] = L::load(near.eight(a, at));
             }
-            let mut g = L::load(here.of(g_column));
+            let mut g = L::load(near.eight(g_column, at));
             if let Factor::Difference(field) = pass.factor {
-                g = g.mul(L::load(here.of(D + 1 + field)));
+                g = g.mul(L::load(near.eight(D + 1 + field, at)));
             }
             let mut products = [g; PRODUCTS];
             degrees!(N <= HIGHEST => {

@@ -10,6 +10,7 @@
 //! | `lanes`      | eight f64, and what is done with them; the portable path |
 //! | `vector`     | the same on AVX2 and AVX-512; all unsafe code of the crate |
 //! | `run`        | checks, blocks, threads |
+//! | `counted`    | a test of what sums cost |
 //!
 //! The neighbours of a particle, in the order of the sorted particles, go to the lanes 0 … 7 in turn. Each lane adds up its
 //! own, and the lanes are added in one fixed order, with no fused operation. Neither the number of threads, nor the
@@ -17,6 +18,8 @@
 //! particles in one place with equal weights and fields are interchangeable, which changes nothing either).
 
 mod arithmetic;
+#[cfg(test)]
+mod counted;
 mod lanes;
 mod radial;
 mod reach;

@@ -88,10 +88,11 @@ impl Reach {
     ) -> usize {
         let table = &sorted.table;
         let along = table.column(D - 1);
-        let here = table.at(place);
+        let here = table.view();
+        let mut packed = near.view_mut();
         let (mut own, mut centre) = ([0.0; D], [L::splat(0.0); D]);
         for a in 0..D {
-            own[a] = here.of(a)[0];
+            own[a] = here.eight(a, place)[0];
             centre[a] = L::splat(own[a]);
         }
         let (square, reach) = (L::splat(bounds.square), L::splat(bounds.reach.next_down()));
@@ -112,26 +113,25 @@ impl Reach {
             window.first = first;
             let mut next = first;
             while next < end && along[next] - own[D - 1] < bounds.reach {
-                let there = table.at(next);
                 let mut r = centre;
                 let mut distance = L::splat(0.0);
                 for a in 0..D {
-                    r[a] = centre[a].sub(L::load(there.of(a)));
+                    r[a] = centre[a].sub(L::load(here.eight(a, next)));
                     distance = if a == 0 { r[a].mul(r[a]) } else { distance.add(r[a].mul(r[a])) };
                 }
                 let ahead = 0xff_u8 >> LANES.saturating_sub(end - next);
                 let inside = distance.below(square) & ahead;
-                if to + LANES > near.length() {
+                if to + LANES > packed.length() {
                     near.grow();
+                    packed = near.view_mut();
                 }
-                let mut near = near.at_mut(to);
                 for a in 0..D {
-                    r[a].pack(inside, near.of(a));
+                    r[a].pack(inside, packed.eight(a, to));
                 }
-                L::load(there.of(D)).pack(inside, near.of(D));
+                L::load(here.eight(D, next)).pack(inside, packed.eight(D, to));
                 for column in D + 1..=D + plan.fields {
-                    let difference = L::load(there.of(column)).sub(L::splat(here.of(column)[0]));
-                    difference.pack(inside, near.of(column));
+                    let own = L::splat(here.eight(column, place)[0]);
+                    L::load(here.eight(column, next)).sub(own).pack(inside, packed.eight(column, to));
                 }
                 to += inside.count_ones() as usize;
                 next += LANES;
@@ -140,7 +140,7 @@ impl Reach {
             }
         }
         for column in 0..=D + plan.fields {
-            L::splat(0.0).store(near.at_mut(to).of(column));
+            L::splat(0.0).store(packed.eight(column, to));
         }
         to - at
     }

@@ -98,12 +98,6 @@ impl Table {
         self.values.resize(columns * (length + LANES), 0.0);
     }
 
-    /// The length of a column.
-    #[inline(always)]
-    pub(super) fn length(&self) -> usize {
-        self.length
-    }
-
     /// Twice as long, what stands in it kept.
     #[cold]
     pub(super) fn grow(&mut self) {
@@ -126,20 +120,18 @@ impl Table {
         &self.values[column * (self.length + LANES)..][..self.length + LANES]
     }
 
-    /// Eight numbers of each column from place `at` on.
+    /// To read it eight by eight.
     #[inline(always)]
-    pub(super) fn at(&self, at: usize) -> Eights<'_> {
-        assert!(at <= self.length, "outside the table");
-        let first = self.values[at..].as_ptr();
-        Eights { first, step: self.length + LANES, columns: self.columns, of: PhantomData }
+    pub(super) fn view(&self) -> View<'_> {
+        let first = self.values.as_ptr();
+        View { first, length: self.length, columns: self.columns, of: PhantomData }
     }
 
-    /// Eight numbers of each column from place `at` on, to be written.
+    /// To read and write it eight by eight.
     #[inline(always)]
-    pub(super) fn at_mut(&mut self, at: usize) -> EightsMut<'_> {
-        assert!(at <= self.length, "outside the table");
-        let first = self.values[at..].as_mut_ptr();
-        EightsMut { first, step: self.length + LANES, columns: self.columns, of: PhantomData }
+    pub(super) fn view_mut(&mut self) -> ViewMut<'_> {
+        let first = self.values.as_mut_ptr();
+        ViewMut { first, length: self.length, columns: self.columns, of: PhantomData }
     }
 
     /// For several threads to write, each its own places: the bits of the numbers, column by column, and the step from one
@@ -158,40 +150,46 @@ impl Table {
     }
 }
 
-/// Eight numbers of each column of a table.
+/// A table to read. By value: so it stays in registers while other tables are written.
 #[derive(Clone, Copy)]
-pub(super) struct Eights<'a> {
+pub(super) struct View<'a> {
     first: *const f64,
-    step: usize,
+    length: usize,
     columns: usize,
     of: PhantomData<&'a Table>,
 }
 
-impl<'a> Eights<'a> {
-    /// Those of one column.
+impl<'a> View<'a> {
+    /// Eight numbers of a column from place `at` on.
     #[inline(always)]
-    pub(super) fn of(self, column: usize) -> &'a [f64; LANES] {
-        assert!(column < self.columns, "outside the table");
-        // SAFETY: each column has LANES numbers from this place on, as `Table::at` has checked; the table is borrowed.
-        unsafe { &*self.first.add(column * self.step).cast() }
+    pub(super) fn eight(self, column: usize, at: usize) -> &'a [f64; LANES] {
+        assert!(column < self.columns && at <= self.length, "outside the table");
+        // SAFETY: each column has LANES numbers from this place on; the table is borrowed.
+        unsafe { &*self.first.add(column * (self.length + LANES) + at).cast() }
     }
 }
 
-/// Eight numbers of each column of a table, to be written.
-pub(super) struct EightsMut<'a> {
+/// A table to read and write.
+pub(super) struct ViewMut<'a> {
     first: *mut f64,
-    step: usize,
+    length: usize,
     columns: usize,
     of: PhantomData<&'a mut Table>,
 }
 
-impl EightsMut<'_> {
-    /// Those of one column.
+impl ViewMut<'_> {
+    /// The length of a column.
     #[inline(always)]
-    pub(super) fn of(&mut self, column: usize) -> &mut [f64; LANES] {
-        assert!(column < self.columns, "outside the table");
-        // SAFETY: as in `Eights::of`; the table is borrowed mutably, and so is this.
-        unsafe { &mut *self.first.add(column * self.step).cast() }
+    pub(super) fn length(&self) -> usize {
+        self.length
+    }
+
+    /// Eight numbers of a column from place `at` on.
+    #[inline(always)]
+    pub(super) fn eight(&mut self, column: usize, at: usize) -> &mut [f64; LANES] {
+        assert!(column < self.columns && at <= self.length, "outside the table");
+        // SAFETY: each column has LANES numbers from this place on; the table is borrowed mutably, and so is this.
+        unsafe { &mut *self.first.add(column * (self.length + LANES) + at).cast() }
     }
 }
 
