@@ -255,8 +255,8 @@ impl Rows<'_> {
             let of_row = (row.first - base) as usize..(row.end - base) as usize;
             let mut columns: Vec<&mut [f64]> =
                 self.columns.iter_mut().map(|column| &mut column[of_row.clone()]).collect();
-            for a in 0..axis {
-                (row.low[a], row.high[a]) = ends(columns[a]);
+            for (a, column) in columns.iter().enumerate().take(axis) {
+                (row.low[a], row.high[a]) = ends(column);
             }
             let compare = |p: usize, q: usize| {
                 // Numbers are finite; −0 and 0 are one place.
