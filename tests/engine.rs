@@ -105,7 +105,7 @@ fn check(kernel: &Kernel, dimension: usize, support: f64, moments: &[Moment], cl
 
 #[test]
 fn all_moments_of_all_kernels_are_those_of_a_plain_loop() {
-    // Planted: s^power one too few in `radial`; y and z exchanged in `raise`; weights not cut at the end of a list.
+    // Planted: y for z in `raise`; neighbours not filled up with zeros.
     for kernel in catalogue() {
         for dimension in 1..=3 {
             let cloud = cloud(dimension, 150, 3.0, 5 + dimension as u64);
@@ -116,8 +116,13 @@ fn all_moments_of_all_kernels_are_those_of_a_plain_loop() {
 
 #[test]
 fn paths_threads_and_order_change_no_bit() {
+    // Planted: lanes added in another order on AVX2; particles in one place sorted by their number.
     for dimension in 1..=3 {
-        let cloud = cloud(dimension, 2000, 8.0, 17);
+        let mut cloud = cloud(dimension, 2000, 8.0, 17);
+        // Some in one place, with other weights and fields.
+        for index in (0..2000).step_by(40) {
+            cloud.positions[index + 1] = cloud.positions[index];
+        }
         for id in ["wendland-c2", "cubic-spline", "gaussian"] {
             let engine =
                 || Engine::for_moments(&by_id(id).unwrap(), dimension, 0.6, &Moment::all(3)).unwrap();
@@ -215,6 +220,7 @@ fn kernel_at_origin(kernel: &Kernel) -> f64 {
 
 #[test]
 fn every_pair_is_found_once() {
+    // Planted: a window opened too late.
     for dimension in 1..=3 {
         for support in [0.05, 0.4, 20.0] {
             let cloud = cloud(dimension, 700, 4.0, 41);

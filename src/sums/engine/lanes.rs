@@ -1,24 +1,12 @@
 //! Eight f64, and what is done with them: one meaning, three implementations.
 //!
-//! Every operation is correctly rounded by itself and acts on each lane alone, so that every implementation gives the same
-//! bits. Nothing here adds across lanes.
-
-#![allow(clippy::needless_range_loop)] // Axes, lanes and orders index several arrays at once.
+//! Every operation is correctly rounded by itself and acts on each lane alone, but for [`Lanes::totals`], which adds lanes
+//! in one order: every implementation gives the same bits.
 
 use crate::kernel::LANES;
 
-/// The neighbours of eight particles: lane l has its list at `l * stride`.
-#[derive(Debug, Default)]
-pub(super) struct Lists {
-    pub(super) of: Vec<u32>,
-    pub(super) stride: usize,
-}
-
 /// Eight f64.
 pub(super) trait Lanes: Copy {
-    /// Eight places in an array.
-    type Index: Copy;
-
     fn splat(value: f64) -> Self;
     fn load(values: &[f64; LANES]) -> Self;
     fn store(self, values: &mut [f64; LANES]);
@@ -27,31 +15,16 @@ pub(super) trait Lanes: Copy {
     fn mul(self, other: Self) -> Self;
     fn div(self, other: Self) -> Self;
     fn sqrt(self) -> Self;
-    /// The larger; no argument may be NaN, and zeros of either sign are alike.
-    fn max(self, other: Self) -> Self;
-    /// The smaller, likewise.
+    /// The smaller; no argument may be NaN, and zeros of either sign are alike.
     fn min(self, other: Self) -> Self;
     /// `yes` where self < other, else `no`.
     fn where_below(self, other: Self, yes: Self, no: Self) -> Self;
-    /// Rounded towards zero; the values are between 0 and 2³¹ − 1.
-    fn whole(self) -> [u32; LANES];
-
-    /// Entry `k` of each list.
-    fn entries(lists: &Lists, k: usize) -> Self::Index;
-    /// The values at these places of each array.
-    fn gather<const C: usize>(arrays: [&[f64]; C], index: Self::Index) -> [Self; C];
-
-    /// Appends to `list` at `len`, in order, each j from `first` to `end` whose distance to `centre` squared is below
-    /// `square`, and returns the new length. There has to be room for end − first + 8 entries, and the arrays must have
-    /// eight elements beyond `end`.
-    fn select<const D: usize>(
-        axes: [&[f64]; D],
-        centre: [f64; D],
-        square: f64,
-        range: (usize, usize),
-        list: &mut [u32],
-        len: usize,
-    ) -> usize;
+    /// Bit l: self < other in lane l.
+    fn below(self, other: Self) -> u8;
+    /// The lanes of the set `inside` in their order, first to last; what stands behind them is anything.
+    fn pack(self, inside: u8, to: &mut [f64; LANES]);
+    /// Lane l: the lanes of `of[l]` added, ((0+4)+(2+6)) + ((1+5)+(3+7)).
+    fn totals(of: [Self; LANES]) -> Self;
 }
 
 /// The portable path: eight numbers in an array.
@@ -68,8 +41,6 @@ fn each(mut f: impl FnMut(usize) -> f64) -> Portable {
 }
 
 impl Lanes for Portable {
-    type Index = [u32; LANES];
-
     #[inline(always)]
     fn splat(value: f64) -> Self {
         Self([value; LANES])
@@ -111,11 +82,6 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        each(|l| if self.0[l] > other.0[l] { self.0[l] } else { other.0[l] })
-    }
-
-    #[inline(always)]
     fn min(self, other: Self) -> Self {
         each(|l| if self.0[l] < other.0[l] { self.0[l] } else { other.0[l] })
     }
@@ -126,43 +92,24 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn whole(self) -> [u32; LANES] {
-        self.0.map(|value| value as u32)
+    fn below(self, other: Self) -> u8 {
+        (0..LANES).fold(0, |set, l| set | u8::from(self.0[l] < other.0[l]) << l)
     }
 
     #[inline(always)]
-    fn entries(lists: &Lists, k: usize) -> Self::Index {
-        std::array::from_fn(|lane| lists.of[lane * lists.stride + k])
-    }
-
-    #[inline(always)]
-    fn gather<const C: usize>(arrays: [&[f64]; C], index: Self::Index) -> [Self; C] {
-        let mut values = [Self::splat(0.0); C];
-        for (value, array) in values.iter_mut().zip(&arrays) {
-            *value = each(|l| array[index[l] as usize]);
+    fn pack(self, inside: u8, to: &mut [f64; LANES]) {
+        let mut next = 0;
+        for l in 0..LANES {
+            to[next % LANES] = self.0[l];
+            next += usize::from(inside >> l & 1);
         }
-        values
     }
 
     #[inline(always)]
-    fn select<const D: usize>(
-        axes: [&[f64]; D],
-        centre: [f64; D],
-        square: f64,
-        (first, end): (usize, usize),
-        list: &mut [u32],
-        mut len: usize,
-    ) -> usize {
-        let axes = axes.map(|axis| &axis[first..end]);
-        for at in 0..end - first {
-            let mut distance = 0.0;
-            for a in 0..D {
-                let r = centre[a] - axes[a][at];
-                distance += r * r;
-            }
-            list[len] = (first + at) as u32;
-            len += usize::from(distance < square);
-        }
-        len
+    fn totals(of: [Self; LANES]) -> Self {
+        each(|l| {
+            let [a, b, c, d, e, f, g, h] = of[l].0;
+            ((a + e) + (c + g)) + ((b + f) + (d + h))
+        })
     }
 }

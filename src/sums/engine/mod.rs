@@ -3,20 +3,23 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `request`    | which sums are wanted, and the fewest passes that give them |
-//! | `sorted`     | particles in rows of cells, sorted along each row, one array per quantity |
-//! | `reach`      | the stretch of each row that a support covers |
+//! | `sorted`     | particles in rows of cells, sorted along each row, one column per quantity |
+//! | `reach`      | windows that slide along the rows around a particle, and the neighbours in them |
 //! | `radial`     | G_k in lanes |
-//! | `arithmetic` | eight particles at a time: neighbours, kernel, sums |
+//! | `arithmetic` | a few particles at a time: neighbours, kernel, sums |
 //! | `lanes`      | eight f64, and what is done with them; the portable path |
 //! | `vector`     | the same on AVX2 and AVX-512; all unsafe code of the crate |
 //! | `run`        | checks, blocks, threads |
+//! | `counted`    | a test of what sums cost |
 //!
-//! A lane is a particle, so the sum of a particle is taken over its neighbours one after another, in the order of the
-//! sorted particles, with no fused operation. Neither the number of threads, nor the instructions the machine has, nor the
-//! order in which particles are given changes a bit (with the one exception that particles in one place with equal weights
-//! and fields are interchangeable, which changes nothing either).
+//! The neighbours of a particle, in the order of the sorted particles, go to the lanes 0 … 7 in turn. Each lane adds up its
+//! own, and the lanes are added in one fixed order, with no fused operation. Neither the number of threads, nor the
+//! instructions the machine has, nor the order in which particles are given changes a bit (with the one exception that
+//! particles in one place with equal weights and fields are interchangeable, which changes nothing either).
 
 mod arithmetic;
+#[cfg(test)]
+mod counted;
 mod lanes;
 mod radial;
 mod reach;

@@ -1,4 +1,4 @@
-//! G_k = W′…/r in lanes, times R^{D+2k}, as a function of x = r/R.
+//! G_k = W′…/r in lanes, as a function of x = r/R.
 //!
 //! The formulas of [`Evaluator`]: polynomials in s = x_right − x. The powers of s that divide a polynomial are taken out, as
 //! these are most of the polynomials of kernels that join zero smoothly.
@@ -35,15 +35,23 @@ pub(super) struct Function {
 }
 
 impl Radial {
-    /// G_0 … G_`order`.
-    pub(super) fn new(kernel: &Kernel, dimension: usize, order: usize) -> Self {
+    /// G_0 … G_`order`. `unit` is G_k's: R^{−D−2k}.
+    pub(super) fn new(kernel: &Kernel, dimension: usize, order: usize, unit: impl Fn(usize) -> f64) -> Self {
         match Evaluator::<f64>::new(kernel, dimension, order).shape() {
-            Shape::Gaussian { rate, factors } => Self::Gaussian { rate: *rate, factors: factors.clone() },
+            Shape::Gaussian { rate, factors } => {
+                let factors = factors.iter().enumerate().map(|(k, factor)| factor * unit(k)).collect();
+                Self::Gaussian { rate: *rate, factors }
+            }
             Shape::Pieces(pieces) => {
                 let piece = pieces.iter().map(|piece| Piece {
                     from: piece.from,
                     to: piece.to,
-                    functions: piece.functions.iter().map(function).collect(),
+                    functions: piece
+                        .functions
+                        .iter()
+                        .enumerate()
+                        .map(|(k, f)| function(f, unit(k)))
+                        .collect(),
                 });
                 let mut pieces: Vec<Piece> = piece.collect();
                 match &mut pieces[..] {
@@ -96,8 +104,8 @@ impl Radial {
     }
 }
 
-fn function((coefficients, inverse): &(Vec<f64>, usize)) -> Function {
-    let mut coefficients = coefficients.clone();
+fn function((coefficients, inverse): &(Vec<f64>, usize), unit: f64) -> Function {
+    let mut coefficients: Vec<f64> = coefficients.iter().map(|c| c * unit).collect();
     let length = coefficients.len();
     while coefficients.len() > 1 && coefficients.last() == Some(&0.0) {
         coefficients.pop();

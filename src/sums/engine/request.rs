@@ -4,6 +4,7 @@
 //! degrees |μ| wanted of it; each product r^μ G_k is an earlier one times an axis.
 
 use crate::exact::MultiIndex;
+use crate::kernel::LANES;
 use crate::sums::{Moment, SumError};
 
 /// The highest degree of r^μ: p = 6 and q = 2.
@@ -41,8 +42,8 @@ pub(super) struct Pass {
     pub(super) factor: Factor,
     /// Bit n: degree n is wanted.
     pub(super) degrees: u16,
-    /// Where its sums stand: degree n from `offsets[n]`, all degrees below the highest given room.
-    pub(super) offset: usize,
+    /// By degree, where its sums stand if it is wanted.
+    pub(super) offsets: [usize; MOST_DEGREE + 1],
 }
 
 impl Pass {
@@ -56,10 +57,12 @@ impl Pass {
 #[derive(Debug, Clone)]
 pub(super) struct Plan {
     pub(super) passes: Vec<Pass>,
-    /// Number of sums that the passes leave behind.
+    /// Number of sums that the passes leave behind, filled up to a multiple of eight.
     pub(super) sums: usize,
-    /// By column of the result: Σ coefficient × sum.
+    /// By column of the result, Σ coefficient × sum.
     pub(super) columns: Vec<Vec<(f64, usize)>>,
+    /// Whether the sums are the columns as they stand.
+    pub(super) plain: bool,
     /// Which G_k are needed.
     pub(super) radials: [bool; MOST_RADIAL + 1],
     /// One more than the highest field asked for.
@@ -67,6 +70,7 @@ pub(super) struct Plan {
 }
 
 /// How many μ have |μ| = `degree`.
+#[inline(always)]
 pub(super) const fn monomials(dimension: usize, degree: usize) -> usize {
     match dimension {
         1 => 1,
@@ -76,6 +80,7 @@ pub(super) const fn monomials(dimension: usize, degree: usize) -> usize {
 }
 
 /// How many μ have |μ| < `degree`.
+#[inline(always)]
 pub(super) const fn monomials_below(dimension: usize, degree: usize) -> usize {
     match dimension {
         1 => degree,
@@ -95,15 +100,11 @@ fn place(dimension: usize, monomial: &MultiIndex) -> usize {
 }
 
 impl Plan {
-    /// For radial sums, component by component. `unit` is G_k's: R^{−D−2k}.
+    /// For radial sums, component by component.
     ///
     /// # Errors
     /// [`SumError::Moment`] beyond p = 8 or k = 2.
-    pub(super) fn of_radial(
-        dimension: usize,
-        wanted: &[RadialSum],
-        unit: impl Fn(usize) -> f64,
-    ) -> Result<Self, SumError> {
+    pub(super) fn of_radial(dimension: usize, wanted: &[RadialSum]) -> Result<Self, SumError> {
         let mut terms = Vec::new();
         for sum in wanted {
             let (p, k) = (usize::from(sum.positions), usize::from(sum.radial));
@@ -115,11 +116,11 @@ impl Plan {
                 all.map(|place| vec![(1.0, Product { radial: k, factor: sum.factor, degree: p, place })]),
             );
         }
-        Ok(Self::new(dimension, &terms, unit))
+        Ok(Self::new(dimension, &terms))
     }
 
     /// For moments, component by component.
-    pub(super) fn of_moments(dimension: usize, moments: &[Moment], unit: impl Fn(usize) -> f64) -> Self {
+    pub(super) fn of_moments(dimension: usize, moments: &[Moment]) -> Self {
         let components = moments.iter().flat_map(|moment| moment.components(dimension));
         let terms: Vec<Vec<(f64, Product)>> = components
             .map(|component| {
@@ -133,46 +134,58 @@ impl Plan {
                 term.map(|t| (t.coefficient as f64, product(&t.monomial, t.radial))).collect()
             })
             .collect();
-        Self::new(dimension, &terms, unit)
+        Self::new(dimension, &terms)
     }
 
-    fn new(dimension: usize, terms: &[Vec<(f64, Product)>], unit: impl Fn(usize) -> f64) -> Self {
+    fn new(dimension: usize, terms: &[Vec<(f64, Product)>]) -> Self {
         let mut passes: Vec<Pass> = Vec::new();
-        for (_, product) in terms.iter().flatten() {
-            let own = |pass: &&mut Pass| pass.radial == product.radial && pass.factor == product.factor;
-            if let Some(pass) = passes.iter_mut().find(own) {
-                pass.degrees |= 1 << product.degree;
-            } else {
-                let (radial, factor) = (product.radial, product.factor);
-                passes.push(Pass { radial, factor, degrees: 1 << product.degree, offset: 0 });
-            }
-        }
         let mut sums = 0;
-        for pass in &mut passes {
-            pass.offset = sums;
-            sums += monomials_below(dimension, pass.highest() + 1);
-        }
-        let sum_of = |product: &Product| {
-            let own = |pass: &&Pass| pass.radial == product.radial && pass.factor == product.factor;
-            let offset = passes.iter().find(own).map_or(0, |pass| pass.offset);
-            offset + monomials_below(dimension, product.degree) + product.place
-        };
-        let column = |terms: &Vec<(f64, Product)>| {
-            terms.iter().map(|(c, product)| (c * unit(product.radial), sum_of(product))).collect()
-        };
-        let columns = terms.iter().map(column).collect();
+        let columns: Vec<Vec<(f64, usize)>> = terms
+            .iter()
+            .map(|terms| {
+                let sum =
+                    |(c, product): &(f64, Product)| (*c, sum_of(product, dimension, &mut passes, &mut sums));
+                terms.iter().map(sum).collect()
+            })
+            .collect();
         let fields = passes.iter().map(|pass| match pass.factor {
             Factor::One => 0,
             Factor::Difference(field) => field + 1,
         });
         Self {
-            sums,
+            plain: columns.iter().enumerate().all(|(column, terms)| terms[..] == [(1.0, column)]),
+            sums: sums.next_multiple_of(LANES),
             columns,
             radials: std::array::from_fn(|k| passes.iter().any(|pass| pass.radial == k)),
             fields: fields.max().unwrap_or(0),
             passes,
         }
     }
+
+    /// The columns of the result from the sums of one particle.
+    pub(super) fn combine(&self, sums: &[f64], columns: &mut [f64]) {
+        for (column, terms) in columns.iter_mut().zip(&self.columns) {
+            // From +0, so that −0 is never a result: which of both a sum of zeros gives would depend on its neighbours.
+            *column = terms.iter().fold(0.0, |column, (coefficient, sum)| column + coefficient * sums[*sum]);
+        }
+    }
+}
+
+/// Where a sum stands; its degree and its pass are entered where they are not known yet.
+fn sum_of(product: &Product, dimension: usize, passes: &mut Vec<Pass>, sums: &mut usize) -> usize {
+    let Product { radial, factor, degree, place } = *product;
+    let known = passes.iter().position(|pass| pass.radial == radial && pass.factor == factor);
+    let pass = known.unwrap_or_else(|| {
+        passes.push(Pass { radial, factor, degrees: 0, offsets: [0; MOST_DEGREE + 1] });
+        passes.len() - 1
+    });
+    let pass = &mut passes[pass];
+    if pass.degrees & (1 << degree) == 0 {
+        pass.degrees |= 1 << degree;
+        pass.offsets[degree] = *sums;
+        *sums += monomials(dimension, degree);
+    }
+    pass.offsets[degree] + place
 }
 
 /// One r^μ G_k a_ij.

@@ -1,11 +1,11 @@
 //! The engine: checks, blocks of particles, threads.
 
-use super::arithmetic::{Scratch, Task};
+use super::arithmetic::{BATCH, Scratch, Space, Take, Task};
 use super::radial::Radial;
 use super::request::{Plan, RadialSum};
 use super::sorted::Sorted;
 use super::vector::{Path, block, write_rows};
-use crate::kernel::{Kernel, LANES};
+use crate::kernel::Kernel;
 use crate::particles::LENGTH_LIMIT;
 use crate::sums::{Moment, SumError};
 use rayon::prelude::*;
@@ -69,7 +69,7 @@ impl Engine {
         moments: &[Moment],
     ) -> Result<Self, SumError> {
         check(dimension, support)?;
-        let plan = Plan::of_moments(dimension, moments, |k| unit(dimension, support, k));
+        let plan = Plan::of_moments(dimension, moments);
         Ok(Self::new(kernel, dimension, support, plan))
     }
 
@@ -84,13 +84,13 @@ impl Engine {
         wanted: &[RadialSum],
     ) -> Result<Self, SumError> {
         check(dimension, support)?;
-        let plan = Plan::of_radial(dimension, wanted, |k| unit(dimension, support, k))?;
+        let plan = Plan::of_radial(dimension, wanted)?;
         Ok(Self::new(kernel, dimension, support, plan))
     }
 
     fn new(kernel: &Kernel, dimension: usize, support: f64, plan: Plan) -> Self {
         let order = plan.radials.iter().rposition(|wanted| *wanted).unwrap_or(0);
-        let radial = Radial::new(kernel, dimension, order);
+        let radial = Radial::new(kernel, dimension, order, |k| unit(dimension, support, k));
         Self { dimension, support, plan, radial, path: Path::best(), sorted: Sorted::default(), pairs: 0 }
     }
 
@@ -144,7 +144,7 @@ impl Engine {
     ) -> Result<(), SumError> {
         self.check_points(points, width, out)?;
         let points = Points { fields: &points.fields[..self.plan.fields], ..*points };
-        self.sorted.rebuild(&points, self.dimension, self.support, self.plan.fields);
+        self.sorted.rebuild(&points, self.dimension, self.support);
         self.pairs = match self.dimension {
             1 => self.sums::<1>(width, out, &finish),
             2 => self.sums::<2>(width, out, &finish),
@@ -158,28 +158,30 @@ impl Engine {
         width: usize,
         out: &mut [f64],
         finish: &(impl Fn(usize, &[f64], &mut [f64]) + Sync + Send),
-    ) -> u64 {
+    ) -> u64
+    where
+        Space<D>: Take,
+    {
         let (sorted, plan) = (&self.sorted, &self.plan);
         let task = Task { sorted, plan, radial: &self.radial, support: self.support };
         let pairs = AtomicU64::new(0);
-        let start =
-            || (Scratch::new(plan), vec![[0.0; LANES]; plan.columns.len()], vec![0.0; plan.columns.len()]);
-        write_rows(&sorted.order, out, width, STRETCH, start, |(scratch, lanes, sums), places, rows| {
+        let start = || (Scratch::new(plan, D), vec![0.0; plan.columns.len()]);
+        write_rows(&sorted.order, out, width, STRETCH, start, |(scratch, columns), places, rows| {
+            let mut last = places.start;
             block::<D>(self.path, &task, places, scratch, &mut |first, count, scratch| {
-                for (lanes, terms) in lanes.iter_mut().zip(&plan.columns) {
-                    // From +0, so that −0 is never a result: which of both a sum of zeros gives would depend on its list.
-                    *lanes = [0.0; LANES];
-                    for (coefficient, sum) in terms {
-                        for (lane, sum) in lanes.iter_mut().zip(&scratch.sums[*sum]) {
-                            *lane += coefficient * sum;
-                        }
-                    }
+                while last < first + 3 * BATCH {
+                    rows.fetch(last);
+                    last += 1;
                 }
-                for lane in 0..count {
-                    for (sum, lanes) in sums.iter_mut().zip(lanes.iter()) {
-                        *sum = lanes[lane];
+                for particle in 0..count {
+                    let mut sums = scratch.sums(particle);
+                    if plan.plain {
+                        sums = &sums[..columns.len()];
+                    } else {
+                        plan.combine(sums, columns);
+                        sums = columns;
                     }
-                    let (particle, row) = rows.row(first + lane);
+                    let (particle, row) = rows.row(first + particle);
                     finish(particle, sums, row);
                 }
             });

@@ -1,22 +1,25 @@
-//! Eight lanes on AVX2 and AVX-512, and rows of results that several threads write: all unsafe code of the crate.
+//! Eight lanes on AVX2 and AVX-512, tables of columns, and rows of results that several threads write: all unsafe code of
+//! the crate.
 //!
 //! Why it is sound:
 //! - **Instructions.** A [`Wide`] or a [`Pair`] is used only by `block_avx512` and `block_avx2`, which [`block`] calls after
-//!   the machine was asked for the features that these functions enable. Both types are private to this file.
-//! - **Loads.** Each gather compares its eight places with the length of every array first; `select` checks the range and
-//!   the room in the list once for all it loads and stores.
+//!   the machine was asked for the features that these functions enable. Both types are private to this file. All of their
+//!   loads and stores go through references to eight numbers.
+//! - **Tables.** A [`Table`] keeps its columns [`LANES`] longer than `length`, and eight numbers are reached at a place of at
+//!   most `length` only. Its numbers can be seen as atomic ones while it is borrowed mutably.
 //! - **Rows.** [`write_rows`] checks that `order` names each row of the result once and hands each stretch of it to one task.
 //!
-//! Only correctly rounded operations on single lanes are used: none is fused, none adds across lanes.
+//! Only correctly rounded operations on single lanes are used, and none is fused.
 
-#![allow(clippy::needless_range_loop)] // Axes, lanes and orders index several arrays at once.
 #![allow(unsafe_code)]
 
-use super::arithmetic::{Scratch, Task, eight};
-use super::lanes::{Lanes, Lists, Portable};
+use super::arithmetic::{Scratch, Space, Take, Task, block_of};
+use super::lanes::{Lanes, Portable};
 use crate::kernel::LANES;
 use rayon::prelude::*;
+use std::marker::PhantomData;
 use std::ops::Range;
+use std::sync::atomic::{AtomicU32, AtomicU64};
 
 /// Which instructions the sums are taken with. The results are the same to the bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,15 +58,19 @@ impl Path {
     }
 }
 
-/// Evaluates the particles at `places`, eight at a time; `done` gets the first place and how many, and finds their sums in
-/// the scratch.
+/// What is called with the first place of some particles and how many there are, their sums in the scratch.
+pub(super) type Done<'a, 'b> = &'a mut (dyn FnMut(usize, usize, &mut Scratch) + 'b);
+
+/// Evaluates the particles at `places`, a few at a time.
 pub(super) fn block<const D: usize>(
     path: Path,
     task: &Task<'_>,
     places: Range<usize>,
     scratch: &mut Scratch,
-    done: &mut dyn FnMut(usize, usize, &mut Scratch),
-) {
+    done: Done<'_, '_>,
+) where
+    Space<D>: Take,
+{
     match path {
         // SAFETY: the machine has the features that the function enables, as was just asked.
         #[cfg(target_arch = "x86_64")]
@@ -75,18 +82,121 @@ pub(super) fn block<const D: usize>(
     }
 }
 
-#[inline(always)]
-fn block_of<L: Lanes, const D: usize>(
-    task: &Task<'_>,
-    places: Range<usize>,
-    scratch: &mut Scratch,
-    done: &mut dyn FnMut(usize, usize, &mut Scratch),
-) {
-    for first in places.clone().step_by(LANES) {
-        let count = LANES.min(places.end - first);
-        eight::<L, D>(task, first, count, scratch);
-        done(first, count, scratch);
+/// Columns of one length, read and written eight numbers at a time: each has room for eight more behind its end.
+#[derive(Debug, Default)]
+pub(super) struct Table {
+    /// `columns` times `length` + [`LANES`] numbers.
+    values: Vec<f64>,
+    columns: usize,
+    length: usize,
+}
+
+impl Table {
+    /// Gives it this shape; what stands in it is anything.
+    pub(super) fn shape(&mut self, columns: usize, length: usize) {
+        (self.columns, self.length) = (columns, length);
+        self.values.resize(columns * (length + LANES), 0.0);
     }
+
+    /// Twice as long, what stands in it kept.
+    #[cold]
+    pub(super) fn grow(&mut self) {
+        let mut longer = Self::default();
+        longer.shape(self.columns, 2 * self.length + 64 * LANES);
+        for (to, from) in longer.columns().zip(self.values.chunks(self.length + LANES)) {
+            to[..self.length].copy_from_slice(&from[..self.length]);
+        }
+        *self = longer;
+    }
+
+    /// Each column, with what is behind its end.
+    pub(super) fn columns(&mut self) -> impl Iterator<Item = &mut [f64]> {
+        self.values.chunks_mut(self.length + LANES)
+    }
+
+    /// One column, with what is behind its end.
+    #[inline(always)]
+    pub(super) fn column(&self, column: usize) -> &[f64] {
+        &self.values[column * (self.length + LANES)..][..self.length + LANES]
+    }
+
+    /// To read it eight by eight.
+    #[inline(always)]
+    pub(super) fn view(&self) -> View<'_> {
+        let first = self.values.as_ptr();
+        View { first, length: self.length, columns: self.columns, of: PhantomData }
+    }
+
+    /// To read and write it eight by eight.
+    #[inline(always)]
+    pub(super) fn view_mut(&mut self) -> ViewMut<'_> {
+        let first = self.values.as_mut_ptr();
+        ViewMut { first, length: self.length, columns: self.columns, of: PhantomData }
+    }
+
+    /// For several threads to write, each its own places: the bits of the numbers, column by column, and the step from one
+    /// column to the next.
+    pub(super) fn shared(&mut self) -> (&[AtomicU64], usize) {
+        let (length, step) = (self.values.len(), self.length + LANES);
+        // SAFETY: an AtomicU64 has the size and alignment of an f64 (both eight bytes on all machines that have it, as is
+        // asserted), all bits are valid for both, and the borrow is a mutable one for as long.
+        const { assert!(align_of::<AtomicU64>() == align_of::<f64>()) };
+        (unsafe { std::slice::from_raw_parts(self.values.as_mut_ptr().cast(), length) }, step)
+    }
+
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        8 * self.values.capacity()
+    }
+}
+
+/// A table to read. By value: so it stays in registers while other tables are written.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    first: *const f64,
+    length: usize,
+    columns: usize,
+    of: PhantomData<&'a Table>,
+}
+
+impl<'a> View<'a> {
+    /// Eight numbers of a column from place `at` on.
+    #[inline(always)]
+    pub(super) fn eight(self, column: usize, at: usize) -> &'a [f64; LANES] {
+        assert!(column < self.columns && at <= self.length, "outside the table");
+        // SAFETY: each column has LANES numbers from this place on; the table is borrowed.
+        unsafe { &*self.first.add(column * (self.length + LANES) + at).cast() }
+    }
+}
+
+/// A table to read and write.
+pub(super) struct ViewMut<'a> {
+    first: *mut f64,
+    length: usize,
+    columns: usize,
+    of: PhantomData<&'a mut Table>,
+}
+
+impl ViewMut<'_> {
+    /// The length of a column.
+    #[inline(always)]
+    pub(super) fn length(&self) -> usize {
+        self.length
+    }
+
+    /// Eight numbers of a column from place `at` on.
+    #[inline(always)]
+    pub(super) fn eight(&mut self, column: usize, at: usize) -> &mut [f64; LANES] {
+        assert!(column < self.columns && at <= self.length, "outside the table");
+        // SAFETY: each column has LANES numbers from this place on; the table is borrowed mutably, and so is this.
+        unsafe { &mut *self.first.add(column * (self.length + LANES) + at).cast() }
+    }
+}
+
+/// For several threads to write, each its own places.
+pub(super) fn shared(values: &mut [u32]) -> &[AtomicU32] {
+    // SAFETY: as in `Table::shared`; size and alignment are those of u32.
+    unsafe { std::slice::from_raw_parts(values.as_mut_ptr().cast(), values.len()) }
 }
 
 /// Calls `write` with each stretch of at most `stretch` places of `order` and a way to the rows of `out` that belong to
@@ -137,6 +247,22 @@ pub(super) struct RowsAt<'a> {
 }
 
 impl RowsAt<'_> {
+    /// Has the row of a place fetched before it is written.
+    #[inline(always)]
+    pub(super) fn fetch(&self, place: usize) {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(particle) = self.order.get(place.wrapping_sub(self.first)) {
+            let row = self.base.wrapping_add(*particle as usize * self.width);
+            for line in (0..self.width).step_by(LANES) {
+                // SAFETY: a hint that reads nothing.
+                unsafe {
+                    use std::arch::x86_64::{_MM_HINT_ET0, _mm_prefetch};
+                    _mm_prefetch::<_MM_HINT_ET0>(row.wrapping_add(line).cast());
+                }
+            }
+        }
+    }
+
     /// The particle at a place, and its row.
     #[inline(always)]
     pub(super) fn row(&mut self, place: usize) -> (usize, &mut [f64]) {
@@ -149,7 +275,7 @@ impl RowsAt<'_> {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(super) use x86::{block_avx2, block_avx512};
+use x86::{block_avx2, block_avx512};
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
@@ -157,22 +283,26 @@ mod x86 {
     use std::arch::x86_64::*;
 
     #[target_feature(enable = "avx512f,avx512vl,popcnt")]
-    pub(in super::super) fn block_avx512<const D: usize>(
+    pub(super) fn block_avx512<const D: usize>(
         task: &Task<'_>,
         places: Range<usize>,
         scratch: &mut Scratch,
-        done: &mut dyn FnMut(usize, usize, &mut Scratch),
-    ) {
+        done: Done<'_, '_>,
+    ) where
+        Space<D>: Take,
+    {
         block_of::<Wide, D>(task, places, scratch, done);
     }
 
     #[target_feature(enable = "avx2,popcnt")]
-    pub(in super::super) fn block_avx2<const D: usize>(
+    pub(super) fn block_avx2<const D: usize>(
         task: &Task<'_>,
         places: Range<usize>,
         scratch: &mut Scratch,
-        done: &mut dyn FnMut(usize, usize, &mut Scratch),
-    ) {
+        done: Done<'_, '_>,
+    ) where
+        Space<D>: Take,
+    {
         block_of::<Pair, D>(task, places, scratch, done);
     }
 
@@ -184,168 +314,128 @@ mod x86 {
     #[derive(Clone, Copy)]
     struct Pair(__m256d, __m256d);
 
-    /// Checks what `select` relies on: eight elements behind the range in each array, and room for it in the list.
-    #[inline(always)]
-    fn check<const D: usize>(axes: &[&[f64]; D], (first, end): (usize, usize), list: &[u32], len: usize) {
-        let room = first <= end && len + (end - first) + LANES <= list.len();
-        assert!(room && axes.iter().all(|axis| end + LANES <= axis.len()), "room for a range");
-    }
-
-    #[inline(always)]
-    fn shortest<const C: usize>(arrays: &[&[f64]; C]) -> u32 {
-        let shortest = arrays.iter().map(|array| array.len()).min().unwrap_or(0);
-        shortest.min(i32::MAX as usize) as u32
-    }
-
-    macro_rules! wide {
+    macro_rules! intrinsics {
         ($e:expr) => {
-            // SAFETY: registers only; used under `block_avx512` alone (head of this file).
+            // SAFETY: registers, and references to eight numbers; used under `block_avx512` or `block_avx2` alone (head of
+            // this file).
             unsafe { $e }
+        };
+    }
+
+    /// The operations lane by lane: of one register, for each of `$part`.
+    macro_rules! lane_by_lane {
+        ($splat:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $sqrt:ident, $min:ident, $($part:tt),+) => {
+            #[inline(always)]
+            fn splat(value: f64) -> Self {
+                intrinsics!(Self($({ let _ = $part; $splat(value) }),+))
+            }
+
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                intrinsics!(Self($($add(self.$part, other.$part)),+))
+            }
+
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                intrinsics!(Self($($sub(self.$part, other.$part)),+))
+            }
+
+            #[inline(always)]
+            fn mul(self, other: Self) -> Self {
+                intrinsics!(Self($($mul(self.$part, other.$part)),+))
+            }
+
+            #[inline(always)]
+            fn div(self, other: Self) -> Self {
+                intrinsics!(Self($($div(self.$part, other.$part)),+))
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                intrinsics!(Self($($sqrt(self.$part)),+))
+            }
+
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                intrinsics!(Self($($min(self.$part, other.$part)),+))
+            }
         };
     }
 
     impl Lanes for Wide {
-        type Index = __m256i;
-
-        #[inline(always)]
-        fn splat(value: f64) -> Self {
-            Self(wide!(_mm512_set1_pd(value)))
-        }
+        lane_by_lane!(
+            _mm512_set1_pd,
+            _mm512_add_pd,
+            _mm512_sub_pd,
+            _mm512_mul_pd,
+            _mm512_div_pd,
+            _mm512_sqrt_pd,
+            _mm512_min_pd,
+            0
+        );
 
         #[inline(always)]
         fn load(values: &[f64; LANES]) -> Self {
-            Self(wide!(_mm512_loadu_pd(values.as_ptr())))
+            Self(intrinsics!(_mm512_loadu_pd(values.as_ptr())))
         }
 
         #[inline(always)]
         fn store(self, values: &mut [f64; LANES]) {
-            wide!(_mm512_storeu_pd(values.as_mut_ptr(), self.0));
-        }
-
-        #[inline(always)]
-        fn add(self, other: Self) -> Self {
-            Self(wide!(_mm512_add_pd(self.0, other.0)))
-        }
-
-        #[inline(always)]
-        fn sub(self, other: Self) -> Self {
-            Self(wide!(_mm512_sub_pd(self.0, other.0)))
-        }
-
-        #[inline(always)]
-        fn mul(self, other: Self) -> Self {
-            Self(wide!(_mm512_mul_pd(self.0, other.0)))
-        }
-
-        #[inline(always)]
-        fn div(self, other: Self) -> Self {
-            Self(wide!(_mm512_div_pd(self.0, other.0)))
-        }
-
-        #[inline(always)]
-        fn sqrt(self) -> Self {
-            Self(wide!(_mm512_sqrt_pd(self.0)))
-        }
-
-        #[inline(always)]
-        fn max(self, other: Self) -> Self {
-            Self(wide!(_mm512_max_pd(self.0, other.0)))
-        }
-
-        #[inline(always)]
-        fn min(self, other: Self) -> Self {
-            Self(wide!(_mm512_min_pd(self.0, other.0)))
+            intrinsics!(_mm512_storeu_pd(values.as_mut_ptr(), self.0));
         }
 
         #[inline(always)]
         fn where_below(self, other: Self, yes: Self, no: Self) -> Self {
-            Self(wide!(_mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0), no.0, yes.0)))
+            Self(intrinsics!(_mm512_mask_blend_pd(self.below(other), no.0, yes.0)))
         }
 
         #[inline(always)]
-        fn whole(self) -> [u32; LANES] {
-            let mut whole = [0; LANES];
-            wide!(_mm256_storeu_si256(whole.as_mut_ptr().cast(), _mm512_cvttpd_epi32(self.0)));
-            whole
+        fn below(self, other: Self) -> u8 {
+            intrinsics!(_mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0))
         }
 
         #[inline(always)]
-        fn entries(lists: &Lists, k: usize) -> Self::Index {
-            let stride = lists.stride;
-            assert!(k < stride && lists.of.len() >= LANES * stride && lists.of.len() <= i32::MAX as usize);
-            wide!({
-                let lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-                let starts = _mm256_mullo_epi32(lane, _mm256_set1_epi32(stride as i32));
-                _mm256_i32gather_epi32::<4>(lists.of.as_ptr().add(k).cast(), starts)
-            })
+        fn pack(self, inside: u8, to: &mut [f64; LANES]) {
+            intrinsics!(_mm512_storeu_pd(to.as_mut_ptr(), _mm512_maskz_compress_pd(inside, self.0)));
         }
 
         #[inline(always)]
-        fn gather<const C: usize>(arrays: [&[f64]; C], index: Self::Index) -> [Self; C] {
-            let length = shortest(&arrays) as i32;
-            wide!({
-                let inside = _mm256_cmplt_epu32_mask(index, _mm256_set1_epi32(length));
-                assert!(inside == 0xff, "a place outside its array");
-                let mut values = [Self(_mm512_setzero_pd()); C];
-                for (value, array) in values.iter_mut().zip(&arrays) {
-                    *value = Self(_mm512_i32gather_pd::<8>(index, array.as_ptr().cast()));
-                }
-                values
-            })
-        }
-
-        #[inline(always)]
-        fn select<const D: usize>(
-            axes: [&[f64]; D],
-            centre: [f64; D],
-            square: f64,
-            (first, end): (usize, usize),
-            list: &mut [u32],
-            mut len: usize,
-        ) -> usize {
-            check(&axes, (first, end), list, len);
-            let bound = Self::splat(square);
-            let mut at = first;
-            while at < end {
-                wide!({
-                    let mut distance = Self::splat(0.0);
-                    for a in 0..D {
-                        let r = Self::splat(centre[a]).sub(Self(_mm512_loadu_pd(axes[a].as_ptr().add(at))));
-                        distance = if a == 0 { r.mul(r) } else { distance.add(r.mul(r)) };
-                    }
-                    let rest = ((1_u32 << (end - at).min(LANES)) - 1) as u8;
-                    let inside = _mm512_mask_cmp_pd_mask::<_CMP_LT_OQ>(rest, distance.0, bound.0);
-                    let places = _mm256_add_epi32(
-                        _mm256_set1_epi32(at as i32),
-                        _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
-                    );
-                    let kept = _mm256_maskz_compress_epi32(inside, places);
-                    _mm256_storeu_si256(list.as_mut_ptr().add(len).cast(), kept);
-                    len += inside.count_ones() as usize;
-                });
-                at += LANES;
-            }
-            len
+        fn totals(of: [Self; LANES]) -> Self {
+            let [a, e, b, f, c, g, d, h] = of;
+            let p = quarters(halves(a.0, b.0), halves(c.0, d.0));
+            let q = quarters(halves(e.0, f.0), halves(g.0, h.0));
+            Self(intrinsics!(_mm512_add_pd(_mm512_unpacklo_pd(p, q), _mm512_unpackhi_pd(p, q))))
         }
     }
 
-    macro_rules! pair {
-        ($e:expr) => {
-            // SAFETY: registers only; used under `block_avx2` alone (head of this file).
-            unsafe { $e }
-        };
+    /// Lanes l + (l + 4) of two.
+    #[inline(always)]
+    fn halves(p: __m512d, q: __m512d) -> __m512d {
+        intrinsics!({
+            let low = _mm512_shuffle_f64x2::<0b01_00_01_00>(p, q);
+            _mm512_add_pd(low, _mm512_shuffle_f64x2::<0b11_10_11_10>(p, q))
+        })
     }
 
-    /// For each set of lanes, the lanes of the set first.
-    static FIRST: [[u32; LANES]; 256] = {
-        let mut table = [[0; LANES]; 256];
+    /// Of lanes added by [`halves`], l + (l + 2).
+    #[inline(always)]
+    fn quarters(p: __m512d, q: __m512d) -> __m512d {
+        intrinsics!({
+            let low = _mm512_shuffle_f64x2::<0b10_00_10_00>(p, q);
+            _mm512_add_pd(low, _mm512_shuffle_f64x2::<0b11_01_11_01>(p, q))
+        })
+    }
+
+    /// For each set of four lanes, the halves of the lanes of the set first.
+    static FIRST: [[i32; 8]; 16] = {
+        let mut table = [[0; 8]; 16];
         let mut set = 0;
-        while set < 256 {
+        while set < 16 {
             let (mut lane, mut to) = (0, 0);
-            while lane < LANES {
+            while lane < 4 {
                 if set >> lane & 1 == 1 {
-                    table[set][to] = lane as u32;
-                    to += 1;
+                    (table[set][to], table[set][to + 1]) = (2 * lane, 2 * lane + 1);
+                    to += 2;
                 }
                 lane += 1;
             }
@@ -355,141 +445,84 @@ mod x86 {
     };
 
     impl Lanes for Pair {
-        type Index = __m256i;
-
-        #[inline(always)]
-        fn splat(value: f64) -> Self {
-            pair!(Self(_mm256_set1_pd(value), _mm256_set1_pd(value)))
-        }
+        lane_by_lane!(
+            _mm256_set1_pd,
+            _mm256_add_pd,
+            _mm256_sub_pd,
+            _mm256_mul_pd,
+            _mm256_div_pd,
+            _mm256_sqrt_pd,
+            _mm256_min_pd,
+            0,
+            1
+        );
 
         #[inline(always)]
         fn load(values: &[f64; LANES]) -> Self {
-            pair!(Self(_mm256_loadu_pd(values.as_ptr()), _mm256_loadu_pd(values.as_ptr().add(4))))
+            intrinsics!(Self(_mm256_loadu_pd(values.as_ptr()), _mm256_loadu_pd(values.as_ptr().add(4))))
         }
 
         #[inline(always)]
         fn store(self, values: &mut [f64; LANES]) {
-            pair!({
+            intrinsics!({
                 _mm256_storeu_pd(values.as_mut_ptr(), self.0);
                 _mm256_storeu_pd(values.as_mut_ptr().add(4), self.1);
             });
         }
 
         #[inline(always)]
-        fn add(self, other: Self) -> Self {
-            pair!(Self(_mm256_add_pd(self.0, other.0), _mm256_add_pd(self.1, other.1)))
-        }
-
-        #[inline(always)]
-        fn sub(self, other: Self) -> Self {
-            pair!(Self(_mm256_sub_pd(self.0, other.0), _mm256_sub_pd(self.1, other.1)))
-        }
-
-        #[inline(always)]
-        fn mul(self, other: Self) -> Self {
-            pair!(Self(_mm256_mul_pd(self.0, other.0), _mm256_mul_pd(self.1, other.1)))
-        }
-
-        #[inline(always)]
-        fn div(self, other: Self) -> Self {
-            pair!(Self(_mm256_div_pd(self.0, other.0), _mm256_div_pd(self.1, other.1)))
-        }
-
-        #[inline(always)]
-        fn sqrt(self) -> Self {
-            pair!(Self(_mm256_sqrt_pd(self.0), _mm256_sqrt_pd(self.1)))
-        }
-
-        #[inline(always)]
-        fn max(self, other: Self) -> Self {
-            pair!(Self(_mm256_max_pd(self.0, other.0), _mm256_max_pd(self.1, other.1)))
-        }
-
-        #[inline(always)]
-        fn min(self, other: Self) -> Self {
-            pair!(Self(_mm256_min_pd(self.0, other.0), _mm256_min_pd(self.1, other.1)))
-        }
-
-        #[inline(always)]
         fn where_below(self, other: Self, yes: Self, no: Self) -> Self {
-            pair!(Self(
+            intrinsics!(Self(
                 _mm256_blendv_pd(no.0, yes.0, _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0)),
                 _mm256_blendv_pd(no.1, yes.1, _mm256_cmp_pd::<_CMP_LT_OQ>(self.1, other.1)),
             ))
         }
 
         #[inline(always)]
-        fn whole(self) -> [u32; LANES] {
-            let mut whole = [0; LANES];
-            pair!({
-                let both = _mm256_set_m128i(_mm256_cvttpd_epi32(self.1), _mm256_cvttpd_epi32(self.0));
-                _mm256_storeu_si256(whole.as_mut_ptr().cast(), both);
+        fn below(self, other: Self) -> u8 {
+            intrinsics!({
+                let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0));
+                let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.1, other.1));
+                (low | high << 4) as u8
+            })
+        }
+
+        #[inline(always)]
+        fn pack(self, inside: u8, to: &mut [f64; LANES]) {
+            let (low, high) = (usize::from(inside & 15), usize::from(inside >> 4));
+            intrinsics!({
+                _mm256_storeu_pd(to.as_mut_ptr(), packed(self.0, low));
+                // The low part fills at most the first half.
+                _mm256_storeu_pd(to.as_mut_ptr().add(low.count_ones() as usize), packed(self.1, high));
             });
-            whole
         }
 
         #[inline(always)]
-        fn entries(lists: &Lists, k: usize) -> Self::Index {
-            let stride = lists.stride;
-            assert!(k < stride && lists.of.len() >= LANES * stride && lists.of.len() <= i32::MAX as usize);
-            pair!({
-                let lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-                let starts = _mm256_mullo_epi32(lane, _mm256_set1_epi32(stride as i32));
-                _mm256_i32gather_epi32::<4>(lists.of.as_ptr().add(k).cast(), starts)
-            })
+        fn totals(of: [Self; LANES]) -> Self {
+            let [a, b, c, d, e, f, g, h] = of;
+            Self(totals([a, b, c, d]), totals([e, f, g, h]))
         }
+    }
 
-        #[inline(always)]
-        fn gather<const C: usize>(arrays: [&[f64]; C], index: Self::Index) -> [Self; C] {
-            let length = shortest(&arrays) as i32;
-            pair!({
-                // Of two numbers below 2³², the smaller is the place exactly if the place is within bounds.
-                let last = _mm256_set1_epi32(length - 1);
-                let inside = _mm256_cmpeq_epi32(_mm256_min_epu32(index, last), index);
-                assert!(length > 0 && _mm256_movemask_epi8(inside) == -1, "a place outside its array");
-                let (low, high) = (_mm256_castsi256_si128(index), _mm256_extracti128_si256::<1>(index));
-                let mut values = [Self(_mm256_setzero_pd(), _mm256_setzero_pd()); C];
-                for (value, array) in values.iter_mut().zip(&arrays) {
-                    let base = array.as_ptr();
-                    *value = Self(_mm256_i32gather_pd::<8>(base, low), _mm256_i32gather_pd::<8>(base, high));
-                }
-                values
-            })
-        }
+    /// The lanes of the set first, in their order.
+    #[inline(always)]
+    fn packed(part: __m256d, set: usize) -> __m256d {
+        intrinsics!({
+            let lanes = _mm256_loadu_si256(FIRST[set].as_ptr().cast());
+            _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(part), lanes))
+        })
+    }
 
-        #[inline(always)]
-        fn select<const D: usize>(
-            axes: [&[f64]; D],
-            centre: [f64; D],
-            square: f64,
-            (first, end): (usize, usize),
-            list: &mut [u32],
-            mut len: usize,
-        ) -> usize {
-            check(&axes, (first, end), list, len);
-            let bound = Self::splat(square);
-            let mut at = first;
-            while at < end {
-                pair!({
-                    let mut distance = Self::splat(0.0);
-                    for a in 0..D {
-                        let base = axes[a].as_ptr().add(at);
-                        let other = Self(_mm256_loadu_pd(base), _mm256_loadu_pd(base.add(4)));
-                        let r = Self::splat(centre[a]).sub(other);
-                        distance = if a == 0 { r.mul(r) } else { distance.add(r.mul(r)) };
-                    }
-                    let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(distance.0, bound.0));
-                    let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(distance.1, bound.1));
-                    let rest = (1_u32 << (end - at).min(LANES)) - 1;
-                    let inside = ((low | high << 4) as u32 & rest) as usize;
-                    let lanes = _mm256_loadu_si256(FIRST[inside].as_ptr().cast());
-                    let kept = _mm256_add_epi32(_mm256_set1_epi32(at as i32), lanes);
-                    _mm256_storeu_si256(list.as_mut_ptr().add(len).cast(), kept);
-                    len += inside.count_ones() as usize;
-                });
-                at += LANES;
-            }
-            len
-        }
+    /// Of four.
+    #[inline(always)]
+    fn totals([a, b, c, d]: [Pair; 4]) -> __m256d {
+        intrinsics!({
+            // Lanes l + (l + 4); of these l + (l + 2), of two; of these l + (l + 1), of four.
+            let (a, b) = (_mm256_add_pd(a.0, a.1), _mm256_add_pd(b.0, b.1));
+            let (c, d) = (_mm256_add_pd(c.0, c.1), _mm256_add_pd(d.0, d.1));
+            let p = _mm256_add_pd(_mm256_permute2f128_pd::<0x20>(a, c), _mm256_permute2f128_pd::<0x31>(a, c));
+            let q = _mm256_add_pd(_mm256_permute2f128_pd::<0x20>(b, d), _mm256_permute2f128_pd::<0x31>(b, d));
+            _mm256_add_pd(_mm256_unpacklo_pd(p, q), _mm256_unpackhi_pd(p, q))
+        })
     }
 }
