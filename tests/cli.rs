@@ -5,6 +5,8 @@
 
 #![allow(clippy::panic, reason = "a test fails by panicking, also in the functions that it shares")]
 
+#[path = "cli/advise.rs"]
+mod advise;
 #[path = "cli/bad_files.rs"]
 mod bad_files;
 #[path = "cli/bad_scenes.rs"]
@@ -31,3 +33,5 @@ mod rms;
 mod same_bytes;
 #[path = "cli/scenes.rs"]
 mod scenes;
+#[path = "cli/time.rs"]
+mod time;
