@@ -97,6 +97,15 @@ pub enum Published {
         /// Absolute margin.
         margin: f64,
     },
+    /// A quantity is O(xᵖ) as x → 0: true, but no more than a bound, if it falls faster.
+    Order {
+        /// Of what.
+        of: Variable,
+        /// p.
+        value: f64,
+        /// Absolute margin.
+        margin: f64,
+    },
     /// A quantity vanishes.
     Zero,
     /// A quantity rises, falls or stays.
@@ -155,6 +164,13 @@ impl Published {
             }
             (Self::Exponent { of, value, margin }, Observed::Number(found)) => {
                 equals(*value, *found, *margin, &format!(" as exponent of {}", of.symbol()))
+            }
+            (Self::Order { of, value, margin }, Observed::Number(found)) => {
+                let (verdict, why) = equals(*value, *found, *margin, &format!(" as order in {}", of.symbol()));
+                match compare_exponent(*value, *found, *margin) {
+                    Comparison::Larger => (Verdict::Bound, why),
+                    _ => (verdict, why),
+                }
             }
             (Self::Zero, Observed::Zero { largest, floor }) => {
                 if largest <= floor {
@@ -269,6 +285,12 @@ mod tests {
         assert_eq!(
             [number(-1.05, 0.02), number(-0.8, 0.02), number(-0.9, 0.02)].map(|o| power.judge(&o).verdict),
             [Confirmed, Refuted, Inconclusive]
+        );
+        let order = Published::Order { of: Variable::DxOverH, value: 3.0, margin: 0.25 };
+        assert_eq!(
+            [number(3.1, 0.1), number(3.5, 0.1), number(1.5, 0.1), number(3.25, 0.1)]
+                .map(|o| order.judge(&o).verdict),
+            [Confirmed, Verdict::Bound, Refuted, Inconclusive]
         );
         let falling = |direction| Published::Trend { of: "E", against: "h", direction, margin: 0.1 };
         assert_eq!(falling(Direction::Falling).judge(&number(-1.0, 0.2)).verdict, Confirmed);
