@@ -199,9 +199,18 @@ impl Published {
 
 fn shown(found: Measured) -> String {
     if found.low == found.high {
-        format!("{:.4}", found.value)
+        number(found.value)
     } else {
-        format!("{:.4} [{:.4}, {:.4}]", found.value, found.low, found.high)
+        format!("{} [{}, {}]", number(found.value), number(found.low), number(found.high))
+    }
+}
+
+/// Four decimals, or four digits of what these would not show.
+fn number(value: f64) -> String {
+    if value == 0.0 || (1e-2..1e5).contains(&value.abs()) {
+        format!("{value:.4}")
+    } else {
+        format!("{value:.3e}")
     }
 }
 

@@ -50,6 +50,12 @@ pub fn continuum_constant(dimension: usize, direction: FlowDirection) -> Rationa
     int(2) / sphere_monomial(dimension, &fourth(direction)) / int(dimension as i64)
 }
 
+/// What multiplies ∂²u/∂x², ∂²u/∂y² and ∂²v/∂x∂y in the first component of ∇·τ over μ, for τ = μ (∇u + ∇uᵀ) + c μ (∇·u) I:
+/// 2 + c, 1 and 1 + c.
+pub fn stress_divergence(c: &Rational) -> [Rational; 3] {
+    [int(2) + c, int(1), int(1) + c]
+}
+
 /// n_x² n_y², or n_x⁴: shear along the diagonal is shear, turned.
 fn fourth(direction: FlowDirection) -> MultiIndex {
     let powers = match direction {

@@ -11,7 +11,7 @@ use crate::language::Operator;
 use crate::particles::{Disorder, Lattice, VolumeRule};
 
 /// L/ℓ.
-pub const CURVATURE_LENGTH: f64 = 10.0;
+const CURVATURE_LENGTH: f64 = 10.0;
 
 /// How the gradient is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

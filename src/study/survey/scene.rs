@@ -29,7 +29,7 @@ struct Kind {
     schema: fn() -> Schema,
 }
 
-const KINDS: &[Kind] = &[];
+const KINDS: &[Kind] = &[kind::<super::basa::BasaParameters>("basa")];
 
 /// The names of the kinds, and the schemas of their scenes.
 pub fn survey_kinds() -> impl Iterator<Item = (&'static str, Schema)> {
