@@ -190,7 +190,11 @@ impl Published {
             (Self::Trend { direction, margin, .. }, Observed::Number(slope)) => {
                 trend(*direction, *slope, *margin)
             }
-            (Self::Relation { sign, .. }, Observed::Sides { left, right }) => relation(*sign, *left, *right),
+            (Self::Relation { left, sign, right }, Observed::Sides { left: first, right: second }) => {
+                let (verdict, ending) = relation(*sign, *first, *second);
+                let text = format!("{left}: {}, {right}: {}", shown(*first), shown(*second));
+                (verdict, format!("{text}{ending}"))
+            }
             _ => (Verdict::Inconclusive, "nothing of the kind was found".to_owned()),
         };
         Judgement { verdict, why: format!("{why}.") }
@@ -216,7 +220,9 @@ fn number(value: f64) -> String {
 
 fn equals(published: f64, found: Measured, margin: f64, unit: &str) -> (Verdict, String) {
     let compared = compare_exponent(published, found, margin);
-    let text = format!("{}{unit} where {published} is published", shown(found));
+    // What is printed has six digits at most.
+    let printed = (published * 1e6).round() / 1e6;
+    let text = format!("{}{unit} where {printed} is published", shown(found));
     match compared {
         Comparison::Equal => (Verdict::Confirmed, format!("{text}: equal within ±{margin:.3}")),
         Comparison::Larger => (Verdict::Refuted, format!("{text}: larger")),
@@ -247,7 +253,8 @@ fn trend(direction: Direction, slope: Measured, margin: f64) -> (Verdict, String
     (verdict, format!("it {} (slope {})", word(found), shown(slope)))
 }
 
-fn relation(sign: Sign, left: Measured, right: Measured) -> (Verdict, String) {
+/// The verdict, and what is to be said beside both values.
+fn relation(sign: Sign, left: Measured, right: Measured) -> (Verdict, &'static str) {
     let margin = match sign {
         Sign::Equal => 0.05 * left.value.abs().max(right.value.abs()),
         Sign::Less | Sign::Greater => 0.0,
@@ -265,11 +272,10 @@ fn relation(sign: Sign, left: Measured, right: Measured) -> (Verdict, String) {
         (Sign::Greater, found) => Some(found == Comparison::Larger),
         (Sign::Equal, found) => Some(found == Comparison::Equal),
     };
-    let text = format!("{} against {}", shown(left), shown(right));
     match holds {
-        Some(true) => (Verdict::Confirmed, text),
-        Some(false) => (Verdict::Refuted, text),
-        None => (Verdict::Inconclusive, format!("{text}: the intervals overlap")),
+        Some(true) => (Verdict::Confirmed, ""),
+        Some(false) => (Verdict::Refuted, ""),
+        None => (Verdict::Inconclusive, "; the intervals overlap"),
     }
 }
 

@@ -245,7 +245,7 @@ fn consistency() -> Vec<Assertion> {
             "4/regular",
             "§4",
             "Some operations of traditional SPH are not zero-order consistent even for regular particles",
-            relation("h² |Σ V ∂²W/∂x²|", Sign::Greater, "zero"),
+            relation("h² |Σ V ∂²W/∂x²|", Sign::Greater, "rounding"),
         ),
         zero("eq-21/order-0", "Eq. (21)", "Shepard interpolation is exact for constants"),
         zero("eq-22/order-0", "Eq. (22)", "The corrected first derivative vanishes for constants"),
@@ -278,7 +278,7 @@ fn second_derivatives() -> Vec<Assertion> {
             "5.1/unmixed-never",
             "§5.1",
             "There is no regular particle distribution for which unmixed second derivatives of a constant vanish",
-            relation("least h² |Σ V ∂²W/∂x²|", Sign::Greater, "zero"),
+            relation("least h² |Σ V ∂²W/∂x²|, between two R/Δ of opposite signs", Sign::Greater, "zero"),
         ),
         zero(
             "5.1/first",
@@ -411,7 +411,7 @@ fn walls() -> Vec<Assertion> {
             "6.1.2/established",
             at,
             "The largest differences between wall treatments are found at the start; in established flow they are similar",
-            relation("spread of the viscous term, parabola", Sign::Less, "spread at start-up"),
+            relation("spread of the viscous term among wall treatments, parabola", Sign::Less, "at start-up"),
         ),
     ]
 }

@@ -32,13 +32,13 @@ pub fn row_second_exponent() -> Rational {
     ratio(5, 2)
 }
 
-/// e of the error of ⟨∂x/∂x⟩ on a regular line: R/Δ whole or any, by Euler & Maclaurin. x W′ and its derivatives up to the
-/// (β − 1)-th vanish at R; its k-th leaves Δ^{k+1} B_{k+1}({R/Δ}), and B of an odd index vanishes at whole R/Δ. Inside, a
-/// jump of x W′ in its k-th derivative at a particle or half-way between two does so for odd k alone.
-pub fn row_regular_exponent(kernel: &Kernel, whole: bool) -> i64 {
+/// e of the error of ⟨∂x/∂x⟩ on a regular line, for any R/Δ or for knots that all stand at particles or half-way between two,
+/// by Euler & Maclaurin. x W′ and its derivatives up to the (β − 1)-th vanish at R; a jump of its k-th leaves
+/// Δ^{k+1} B_{k+1}({R/Δ}), and B of an odd index vanishes at 0 and at 1/2. B-splines at whole h/Δ are exact beyond that.
+pub fn row_regular_exponent(kernel: &Kernel, aligned: bool) -> i64 {
     // The derivative of x W′ that jumps at each knot is one lower than that of W; at the origin x W′ has the power s itself.
     let knots = kernel.jumps().into_iter().filter_map(|jump| jump.order).map(|order| order as i64 - 1);
-    let at_knots = knots.map(|k| if whole && k % 2 == 0 { k + 2 } else { k + 1 });
+    let at_knots = knots.map(|k| if aligned && k % 2 == 0 { k + 2 } else { k + 1 });
     let origin = kernel.first_odd_power().map(|power| power as i64 + 1);
     at_knots.chain(origin).min().unwrap_or(i64::MAX)
 }

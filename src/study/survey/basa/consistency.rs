@@ -252,7 +252,7 @@ impl ConsistencyPart {
             by_symmetry: [true, planes == "xy", planes == "xy"],
             unmixed_left: true,
             largest: self.largest(&placed)?,
-            interpolation: [f64::NAN; 2],
+            interpolation: [0.0; 2],
         })
     }
 
@@ -477,7 +477,7 @@ impl ConsistencyPart {
         if found.is_lattice {
             let left = if found.unmixed_left { 1.0 } else { 0.0 };
             judge(report, "5.1/unmixed-symmetry", case(), sides(left, 0.0), None)?;
-            judge(report, "4/regular", case(), None, sides(found.largest[3], 0.0))?;
+            judge(report, "4/regular", case(), None, sides(found.largest[3], ROUNDING))?;
             for (rule, value) in VolumeRule::ALL.into_iter().zip(found.interpolation) {
                 let case = crate::record::Case { volume_rule: rule.id().into(), ..case() };
                 judge(report, "5.1/interpolation", case, None, sides(value, ROUNDING))?;

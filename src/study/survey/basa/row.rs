@@ -21,8 +21,9 @@ const SMALL: &str = "box:0.04";
 const AMPLITUDES: [f64; 4] = [0.02, 0.04, 0.08, 0.16];
 /// R/Δ at which they are.
 const AT: f64 = 16.7;
-/// Whole R/Δ.
-const WHOLE: [i64; 5] = [8, 12, 16, 24, 32];
+/// 2h/Δ: every knot of a spline at a particle or half-way between two. At whole h/Δ B-splines are exact: their Fourier
+/// transform vanishes at all waves of the lattice.
+const ALIGNED: [i64; 5] = [7, 11, 15, 23, 31];
 /// Offsets of R/Δ over which an envelope is taken, in 16ths.
 const OFFSETS: i64 = 16;
 /// Memory for shells.
@@ -43,8 +44,8 @@ struct Ladder {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Regular {
     kernel: String,
-    /// \[Δ/h, |error| at whole R/Δ\].
-    whole: Vec<[f64; 2]>,
+    /// \[Δ/h, |error| at h/Δ = n + 1/2\].
+    aligned: Vec<[f64; 2]>,
     /// \[Δ/h, envelope\].
     envelope: Vec<[f64; 2]>,
 }
@@ -104,15 +105,16 @@ impl RowPart {
             };
             Ok(regular_rung(&spec, &group)?.norms.iter().map(|norms| norms[0].deviation).collect())
         };
-        let dx_over_h = |support: i64| Common::dx_over_h(&kernel, support as f64);
-        let whole = deviations(WHOLE.iter().map(|n| int(*n)).collect())?;
-        let whole = WHOLE.iter().zip(whole).map(|(n, e)| [dx_over_h(*n), e]).collect();
-        let envelope = WHOLE.iter().map(|n| {
-            let around = (0..OFFSETS).map(|k| int(*n) + int(k) / int(OFFSETS));
+        let support = |n: i64| kernel.support_over_h() * int(n) / int(2);
+        let dx_over_h = |n: i64| 2.0 / n as f64;
+        let aligned = deviations(ALIGNED.iter().map(|n| support(*n)).collect())?;
+        let aligned = ALIGNED.iter().zip(aligned).map(|(n, e)| [dx_over_h(*n), e]).collect();
+        let envelope = ALIGNED.iter().map(|n| {
+            let around = (0..OFFSETS).map(|k| support(*n) + int(k) / int(OFFSETS));
             let largest = deviations(around.collect())?.into_iter().fold(0.0, f64::max);
             Ok::<_, TaskError>([dx_over_h(*n), largest])
         });
-        Ok(Regular { kernel: id.into(), whole, envelope: envelope.collect::<Result<_, _>>()? })
+        Ok(Regular { kernel: id.into(), aligned, envelope: envelope.collect::<Result<_, _>>()? })
     }
 }
 
@@ -197,10 +199,10 @@ fn judge_regular(found: &Regular, report: &mut Report) -> Result<(), TaskError> 
         "quintic-spline" => "eq-15/regular-quintic",
         _ => "eq-15/regular-wendland",
     };
-    for (points, whole, words) in
-        [(&found.whole, true, "R/Δ whole"), (&found.envelope, false, "any R/Δ, envelope")]
+    for (points, aligned, words) in
+        [(&found.aligned, true, "h/Δ = n + 1/2"), (&found.envelope, false, "any h/Δ, envelope")]
     {
-        let derived = number(row_regular_exponent(&kernel, whole) as f64);
+        let derived = number(row_regular_exponent(&kernel, aligned) as f64);
         let measured = Some(Observed::Number(slope(points)?));
         let case = on_line(&found.kernel, VolumeRule::Constant.id()).with("support", words);
         judge(report, id, case, derived, measured)?;
