@@ -50,7 +50,7 @@ fn the_factor_is_twice_d_plus_two() {
                 let rule = VolumeRule::Constant;
                 let of = |regularised| {
                     let f = lattice_response(ViscousModel::C, &kernel, &lattice, support, rule, *direction, regularised);
-                    (f.unwrap(), continuum_response(ViscousModel::C, &kernel, dimension, *direction, regularised))
+                    (f, continuum_response(ViscousModel::C, &kernel, dimension, *direction, regularised))
                 };
                 for regularised in [false, true] {
                     let (sum, limit) = of(regularised);
@@ -101,11 +101,9 @@ fn the_calibrated_constant_is_that_of_the_lattice() {
         FlowDirection::ShearAxis,
         true,
     );
-    let derived = 1.0 / (ViscousModel::D.unit_of_constant(2) * f.unwrap());
+    let derived = 1.0 / (ViscousModel::D.unit_of_constant(2) * f);
     assert!((derived - xi).abs() < 1e-12, "{derived} against {xi}");
     assert!((xi - 4.24).abs() < 0.006, "{xi}");
-    // It is no number of the method's: the same flow along the diagonal asks for another one.
-    assert!(derived > 4.2 && xi < 4.3);
 }
 
 /// Seen to fail with the last term of model B's text left out.
@@ -117,10 +115,7 @@ fn models_on_particles_give_what_was_derived() {
                 for direction in FlowDirection::in_dimension(lattice.dimension()) {
                     let kernel = cubic();
                     let at = (2.5, rule, *direction);
-                    let Some(derived) = lattice_response(model, &kernel, &lattice, at.0, at.1, at.2, true) else {
-                        assert_eq!((model, lattice.id()), (ViscousModel::B, "hcp"));
-                        continue;
-                    };
+                    let derived = lattice_response(model, &kernel, &lattice, at.0, at.1, at.2, true);
                     let measured = measured_response(model, &kernel, &lattice, at.0, at.1, at.2, true).unwrap();
                     assert!(
                         (derived - measured).abs() < 1e-12,
@@ -155,7 +150,7 @@ fn model_e_is_a_component_of_b_inverse() {
                 FlowDirection::ShearAxis,
                 false,
             );
-            assert!((found.unwrap() - exact).abs() < 1e-12, "{id}: {found:?} against {exact}");
+            assert!((found - exact).abs() < 1e-12, "{id}: {found} against {exact}");
         }
     }
 }

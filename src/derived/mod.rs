@@ -49,6 +49,6 @@ pub use orders::{
 pub use own_cells::{row_amplitude, row_exponent, row_regular_exponent, row_second_exponent};
 pub use rms::{ComponentError, Model, RmsError, Setting, linearised};
 pub use viscosity::{
-    continuum_constant, continuum_response, lattice_response, second_derivative_of_one, stress_divergence,
+    LatticeFlow, continuum_constant, continuum_response, lattice_response, second_derivative_of_one, stress_divergence,
 };
 pub use write::{Format, Printed};

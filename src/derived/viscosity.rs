@@ -9,13 +9,13 @@
 //! so that K = 1/F. In the continuum, η = 0, ∫ r W′ dV = −D and the mean of n_a²n_b² over the sphere leave F = 1/(2(D + 2)) for
 //! n ⊥ t and three times that for n = t, whatever the kernel: K = 2 (D + 2), which is 8 in 2-D (model C) and ξ = D + 2.
 //! Model E gives −Σ V (n·r)² W′/r, the component of B⁻¹ along n. Models A and B follow from their texts in
-//! [`ViscousModel::bare`]; what B makes of a quadratic flow is S n·S n + (t·S n)²/3 with S = B⁻¹, if the sites are centres of
-//! inversion.
+//! [`ViscousModel::bare`]; what B makes of a quadratic flow is S n·S n + (t·S n)²/3 with S = B⁻¹ if the sites are centres of
+//! inversion, and more if they are not.
 
 use crate::exact::{MultiIndex, Rational, int, rational_to_f64};
 use crate::kernel::{Evaluator, Kernel, SummandTerm, sphere_monomial};
 use crate::language::{FlowDirection, ViscousModel};
-use crate::particles::{Lattice, PointGroup, VolumeRule};
+use crate::particles::{Lattice, Site, SiteIndex, VolumeRule};
 
 /// η²/h² of Eqs. (32) to (34), and what Chaussonnet et al. call θ.
 const ETA_SQUARED: f64 = 0.01;
@@ -108,10 +108,7 @@ fn simpson(f: &impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     (f(from + inside) + inner.sum::<f64>() + f(to - inside)) * step / 3.0
 }
 
-/// The bare sum of a model on a flow, at a site of a lattice.
-///
-/// `None` for model B where sites are no centres of inversion: its second pass then sees what the first adds to a linear
-/// function.
+/// The bare sum of a model on a flow, at a site of a lattice: [`LatticeFlow`] for one question.
 pub fn lattice_response(
     model: ViscousModel,
     kernel: &Kernel,
@@ -120,31 +117,8 @@ pub fn lattice_response(
     rule: VolumeRule,
     direction: FlowDirection,
     regularised: bool,
-) -> Option<f64> {
-    if model == ViscousModel::B && !(lattice.basis().len() == 1 || PointGroup::of(lattice).has_inversion()) {
-        return None;
-    }
-    let pairs = Pairs::of(kernel, lattice, support_over_dx, rule);
-    let d = lattice.dimension() as f64;
-    let [n, t] = direction.vectors();
-    let eta = if regularised { pairs.h * pairs.h * ETA_SQUARED } else { 0.0 };
-    Some(match model {
-        ViscousModel::A => pairs.sum(|r, [_, g1, g2]| {
-            let laplacian = d * g1 + dot(r, r) * g2;
-            let along = g1 + dot(&t, r) * dot(&t, r) * g2;
-            0.5 * dot(&n, r) * dot(&n, r) * (laplacian + along / 3.0)
-        }),
-        ViscousModel::B => {
-            let s_n: [f64; 3] = std::array::from_fn(|a| pairs.sum(|r, [_, g1, _]| -r[a] * dot(&n, r) * g1));
-            dot(&s_n, &s_n) + dot(&t, &s_n) * dot(&t, &s_n) / 3.0
-        }
-        ViscousModel::E => pairs.sum(|r, [_, g1, _]| -dot(&n, r) * dot(&n, r) * g1),
-        ViscousModel::C | ViscousModel::D | ViscousModel::Mcg => pairs.sum(|r, [_, g1, _]| {
-            let product = dot(&n, r) * dot(&t, r);
-            let square = dot(r, r);
-            if square == 0.0 { 0.0 } else { -0.5 * product * product * g1 / (square + eta) }
-        }),
-    })
+) -> f64 {
+    LatticeFlow::new(kernel, lattice, support_over_dx, rule).response(model, direction, regularised)
 }
 
 /// Σ_j V_j ∂²W/∂x² at a site, in units of Δ: what a direct second derivative makes of u = 1.
@@ -154,37 +128,104 @@ pub fn second_derivative_of_one(
     support_over_dx: f64,
     rule: VolumeRule,
 ) -> f64 {
-    Pairs::of(kernel, lattice, support_over_dx, rule).sum(|r, [_, g1, g2]| g1 + r[0] * r[0] * g2)
+    LatticeFlow::new(kernel, lattice, support_over_dx, rule).sum(|pair| pair.g[1] + pair.r[0] * pair.r[0] * pair.g[2])
 }
 
-/// The neighbours of a site, itself among them, lengths in Δ.
-struct Pairs {
-    of: Vec<([f64; 3], [f64; 3])>,
+/// A pair of sites, lengths in Δ.
+struct Pair {
+    /// r_ij.
+    r: [f64; 3],
+    /// W, W′/r, (W′/r)′/r.
+    g: [f64; 3],
+    /// Which particle of its cell j is.
+    basis: usize,
+}
+
+/// The neighbours of each particle of a lattice's cell, itself among them, ready for every model and flow.
+pub struct LatticeFlow {
+    dimension: usize,
+    /// By particle of the cell.
+    pairs: Vec<Vec<Pair>>,
     volume: f64,
     h: f64,
 }
 
-impl Pairs {
-    fn of(kernel: &Kernel, lattice: &Lattice, support: f64, rule: VolumeRule) -> Self {
+impl LatticeFlow {
+    /// At this R/Δ.
+    pub fn new(kernel: &Kernel, lattice: &Lattice, support: f64, rule: VolumeRule) -> Self {
         let dimension = lattice.dimension();
         let evaluator = Evaluator::<f64>::new(kernel, dimension, 2);
         let scale = (0..dimension).fold(1.0, |scale, _| scale / support);
         let per_square = 1.0 / (support * support);
-        let sites = lattice.sites_within(support).into_iter().map(|site| site.position);
-        let pairs = sites.filter(|r| dot(r, r) < support * support).map(|r| {
-            let g = evaluator.radial(dot(&r, &r).sqrt() / support);
-            (r, [g[0] * scale, g[1] * scale * per_square, g[2] * scale * per_square * per_square])
-        });
-        let of: Vec<([f64; 3], [f64; 3])> = pairs.collect();
+        let units = lattice.axis_units();
+        let around = |k: &SiteIndex| -> Vec<Pair> {
+            let own: [f64; 3] = std::array::from_fn(|a| k[a] as f64 * units[a]);
+            let sites = lattice.sites_within(support + dot(&own, &own).sqrt()).into_iter();
+            let pair = |site: Site| {
+                let r: [f64; 3] = std::array::from_fn(|a| own[a] - site.position[a]);
+                let square = dot(&r, &r);
+                (square < support * support).then(|| {
+                    let g = evaluator.radial(square.sqrt() / support);
+                    let g = [g[0] * scale, g[1] * scale * per_square, g[2] * scale * per_square * per_square];
+                    Pair { r, g, basis: site.basis }
+                })
+            };
+            sites.filter_map(pair).collect()
+        };
+        let pairs: Vec<Vec<Pair>> = lattice.basis().iter().map(around).collect();
         let volume = match rule {
             VolumeRule::Constant => lattice.particle_volume().enclose(96).midpoint_f64(),
-            VolumeRule::NumberDensity => 1.0 / of.iter().map(|(_, g)| g[0]).sum::<f64>(),
+            VolumeRule::NumberDensity => 1.0 / pairs[0].iter().map(|pair| pair.g[0]).sum::<f64>(),
         };
-        Self { of, volume, h: support / rational_to_f64(kernel.support_over_h()) }
+        Self { dimension, pairs, volume, h: support / rational_to_f64(kernel.support_over_h()) }
     }
 
-    fn sum(&self, summand: impl Fn(&[f64; 3], [f64; 3]) -> f64) -> f64 {
-        self.volume * self.of.iter().map(|(r, g)| summand(r, *g)).sum::<f64>()
+    /// ⟨L v⟩·t of the bare sum of a model on v = t (n·r)²/2 about the first particle.
+    pub fn response(&self, model: ViscousModel, direction: FlowDirection, regularised: bool) -> f64 {
+        let d = self.dimension as f64;
+        let [n, t] = direction.vectors();
+        let eta = if regularised { self.h * self.h * ETA_SQUARED } else { 0.0 };
+        match model {
+            ViscousModel::A => self.sum(|Pair { r, g: [_, g1, g2], .. }| {
+                let laplacian = d * g1 + dot(r, r) * g2;
+                let along = g1 + dot(&t, r) * dot(&t, r) * g2;
+                0.5 * dot(&n, r) * dot(&n, r) * (laplacian + along / 3.0)
+            }),
+            ViscousModel::B => self.two_passes(&n, &t),
+            ViscousModel::E => self.sum(|Pair { r, g, .. }| -dot(&n, r) * dot(&n, r) * g[1]),
+            ViscousModel::C | ViscousModel::D | ViscousModel::Mcg => self.sum(|Pair { r, g, .. }| {
+                let product = dot(&n, r) * dot(&t, r);
+                let square = dot(r, r);
+                if square == 0.0 { 0.0 } else { -0.5 * product * product * g[1] / (square + eta) }
+            }),
+        }
+    }
+
+    /// The first pass at x_j leaves t ⊗ q with q = ½(n·x_j)² Σ V ∇W + (n·x_j) S n + ½ Σ V (n·r)² ∇W, the sums about j; the
+    /// second Σ V [q·∇W + (t·q)(t·∇W)/3]. With inversion q is (n·x_j) S n and the whole S n·S n + (t·S n)²/3.
+    fn two_passes(&self, n: &[f64; 3], t: &[f64; 3]) -> f64 {
+        // By particle of the cell: Σ V ∇W, S n, Σ V (n·r)² ∇W.
+        let about = |pairs: &Vec<Pair>| -> [[f64; 3]; 3] {
+            let moment = |weight: &dyn Fn(f64) -> f64| {
+                std::array::from_fn(|a| {
+                    self.volume * pairs.iter().map(|Pair { r, g, .. }| weight(dot(n, r)) * r[a] * g[1]).sum::<f64>()
+                })
+            };
+            [moment(&|_| 1.0), moment(&|x| -x), moment(&|x| x * x)]
+        };
+        let sums: Vec<[[f64; 3]; 3]> = self.pairs.iter().map(about).collect();
+        self.sum(|Pair { r, g, basis }| {
+            // x_j = −r_ij.
+            let x = -dot(n, r);
+            let [zeroth, first, second] = &sums[*basis];
+            let q: [f64; 3] =
+                std::array::from_fn(|a| 0.5 * x * x * zeroth[a] + x * first[a] + 0.5 * second[a]);
+            g[1] * (dot(&q, r) + dot(t, &q) * dot(t, r) / 3.0)
+        })
+    }
+
+    fn sum(&self, summand: impl Fn(&Pair) -> f64) -> f64 {
+        self.volume * self.pairs[0].iter().map(summand).sum::<f64>()
     }
 }
 

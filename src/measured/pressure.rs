@@ -136,8 +136,6 @@ pub struct PressureErrors {
 pub struct PressureField {
     /// Root mean square over particles and neighbours of |p_j − p_avg|/(g ℓ).
     pub reduced: f64,
-    /// Root mean square of |p − p₀ − g x|/(g ℓ).
-    pub hydrostatic: f64,
     /// Particles looked at.
     pub particles: usize,
     /// Pairs of particles in the lists.
@@ -185,24 +183,20 @@ pub fn pressure_errors(
             all.push(PressureErrors { form, correction, errors });
         }
     }
-    Ok((all, pressures(&placed, dx, field)))
+    Ok((all, pressures(&placed, field)))
 }
 
-fn pressures(placed: &Placed, dx: f64, field: impl Fn(f64, f64) -> f64) -> PressureField {
+fn pressures(placed: &Placed, field: impl Fn(f64, f64) -> f64) -> PressureField {
     let positions = placed.cloud.positions();
-    let (mut reduced, mut hydrostatic, mut pairs) = (0.0, 0.0, 0_usize);
+    let (mut reduced, mut pairs) = (0.0, 0_usize);
     for i in &placed.inner {
         let around: Vec<f64> = placed.lists.of(*i).iter().map(|n| field(0.0, positions[n.j as usize][0])).collect();
         let mean = around.iter().sum::<f64>() / around.len() as f64;
         reduced += around.iter().map(|p| (p - mean) * (p - mean)).sum::<f64>();
         pairs += around.len();
-        let rest = field(0.0, positions[*i][0]) - dx * positions[*i][0];
-        hydrostatic += rest * rest;
     }
-    let count = placed.inner.len().max(1);
     PressureField {
         reduced: (reduced / pairs.max(1) as f64).sqrt(),
-        hydrostatic: (hydrostatic / count as f64).sqrt(),
         particles: placed.inner.len(),
         pairs: placed.lists.entry_count() as u64,
     }

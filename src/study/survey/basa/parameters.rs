@@ -109,10 +109,11 @@ impl Parameters for BasaParameters {
         }
         let mut parameters = self;
         if quick {
-            parameters.line_samples = parameters.line_samples.min(40);
+            parameters.line_samples = parameters.line_samples.min(100);
+            parameters.ladder.truncate(1);
             parameters.ball_radius = parameters.ball_radius.min(4.0 / parameters.dx_over_h + 6.0);
         }
-        let common = Arc::new(Common { kernel, parameters, disorders, seed });
+        let common = Arc::new(Common { kernel, parameters, disorders, seed, quick });
         Ok(Box::new(BasaSurvey::new(&common)))
     }
 }

@@ -32,6 +32,8 @@ pub(super) struct Common {
     pub parameters: BasaParameters,
     pub disorders: Vec<Disorder>,
     pub seed: u64,
+    /// Whether this is a first look.
+    pub quick: bool,
 }
 
 impl Common {
