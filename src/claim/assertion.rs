@@ -97,6 +97,15 @@ pub enum Published {
         /// Absolute margin.
         margin: f64,
     },
+    /// A quantity is O(xᵖ) as x → 0: true, but no more than a bound, if it falls faster.
+    Order {
+        /// Of what.
+        of: Variable,
+        /// p.
+        value: f64,
+        /// Absolute margin.
+        margin: f64,
+    },
     /// A quantity vanishes.
     Zero,
     /// A quantity rises, falls or stays.
@@ -156,6 +165,14 @@ impl Published {
             (Self::Exponent { of, value, margin }, Observed::Number(found)) => {
                 equals(*value, *found, *margin, &format!(" as exponent of {}", of.symbol()))
             }
+            (Self::Order { of, value, margin }, Observed::Number(found)) => {
+                let (verdict, why) =
+                    equals(*value, *found, *margin, &format!(" as order in {}", of.symbol()));
+                match compare_exponent(*value, *found, *margin) {
+                    Comparison::Larger => (Verdict::Bound, why),
+                    _ => (verdict, why),
+                }
+            }
             (Self::Zero, Observed::Zero { largest, floor }) => {
                 if largest <= floor {
                     let how = if *floor == 0.0 {
@@ -174,7 +191,11 @@ impl Published {
             (Self::Trend { direction, margin, .. }, Observed::Number(slope)) => {
                 trend(*direction, *slope, *margin)
             }
-            (Self::Relation { sign, .. }, Observed::Sides { left, right }) => relation(*sign, *left, *right),
+            (Self::Relation { left, sign, right }, Observed::Sides { left: first, right: second }) => {
+                let (verdict, ending) = relation(*sign, *first, *second);
+                let text = format!("{left}: {}, {right}: {}", shown(*first), shown(*second));
+                (verdict, format!("{text}{ending}"))
+            }
             _ => (Verdict::Inconclusive, "nothing of the kind was found".to_owned()),
         };
         Judgement { verdict, why: format!("{why}.") }
@@ -183,15 +204,26 @@ impl Published {
 
 fn shown(found: Measured) -> String {
     if found.low == found.high {
-        format!("{:.4}", found.value)
+        number(found.value)
     } else {
-        format!("{:.4} [{:.4}, {:.4}]", found.value, found.low, found.high)
+        format!("{} [{}, {}]", number(found.value), number(found.low), number(found.high))
+    }
+}
+
+/// Four decimals, or four digits of what these would not show.
+fn number(value: f64) -> String {
+    if value == 0.0 || (1e-2..1e5).contains(&value.abs()) {
+        format!("{value:.4}")
+    } else {
+        format!("{value:.3e}")
     }
 }
 
 fn equals(published: f64, found: Measured, margin: f64, unit: &str) -> (Verdict, String) {
     let compared = compare_exponent(published, found, margin);
-    let text = format!("{}{unit} where {published} is published", shown(found));
+    // What is printed has six digits at most.
+    let printed = (published * 1e6).round() / 1e6;
+    let text = format!("{}{unit} where {printed} is published", shown(found));
     match compared {
         Comparison::Equal => (Verdict::Confirmed, format!("{text}: equal within ±{margin:.3}")),
         Comparison::Larger => (Verdict::Refuted, format!("{text}: larger")),
@@ -222,7 +254,8 @@ fn trend(direction: Direction, slope: Measured, margin: f64) -> (Verdict, String
     (verdict, format!("it {} (slope {})", word(found), shown(slope)))
 }
 
-fn relation(sign: Sign, left: Measured, right: Measured) -> (Verdict, String) {
+/// The verdict, and what is to be said beside both values.
+fn relation(sign: Sign, left: Measured, right: Measured) -> (Verdict, &'static str) {
     let margin = match sign {
         Sign::Equal => 0.05 * left.value.abs().max(right.value.abs()),
         Sign::Less | Sign::Greater => 0.0,
@@ -240,11 +273,10 @@ fn relation(sign: Sign, left: Measured, right: Measured) -> (Verdict, String) {
         (Sign::Greater, found) => Some(found == Comparison::Larger),
         (Sign::Equal, found) => Some(found == Comparison::Equal),
     };
-    let text = format!("{} against {}", shown(left), shown(right));
     match holds {
-        Some(true) => (Verdict::Confirmed, text),
-        Some(false) => (Verdict::Refuted, text),
-        None => (Verdict::Inconclusive, format!("{text}: the intervals overlap")),
+        Some(true) => (Verdict::Confirmed, ""),
+        Some(false) => (Verdict::Refuted, ""),
+        None => (Verdict::Inconclusive, "; the intervals overlap"),
     }
 }
 
@@ -269,6 +301,12 @@ mod tests {
         assert_eq!(
             [number(-1.05, 0.02), number(-0.8, 0.02), number(-0.9, 0.02)].map(|o| power.judge(&o).verdict),
             [Confirmed, Refuted, Inconclusive]
+        );
+        let order = Published::Order { of: Variable::DxOverH, value: 3.0, margin: 0.25 };
+        assert_eq!(
+            [number(3.1, 0.1), number(3.5, 0.1), number(1.5, 0.1), number(3.25, 0.1)]
+                .map(|o| order.judge(&o).verdict),
+            [Confirmed, Verdict::Bound, Refuted, Inconclusive]
         );
         let falling = |direction| Published::Trend { of: "E", against: "h", direction, margin: 0.1 };
         assert_eq!(falling(Direction::Falling).judge(&number(-1.0, 0.2)).verdict, Confirmed);

@@ -5,6 +5,7 @@
 //! file, or one in a scene.
 
 mod assertion;
+pub mod basa_2009;
 pub mod chaussonnet_2015;
 mod compare;
 mod error;

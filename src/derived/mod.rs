@@ -10,12 +10,16 @@
 //! - `neighbour_distance`: how far apart neighbours are under canonical disorder.
 //! - `laplacian_factor`: by what bare Laplacians multiply u″ in the continuum.
 //! - `conserve`: which sums are conserved, whatever the field.
+//! - `own_cells`: a sum on a displaced line, with volumes that are the particles' own cells.
+//! - `channel`: the start-up of the flow in a channel.
+//! - `viscosity`: the constants of viscous models.
 //! - `orders`: moment sums as powers of Δ/h and of the displacement.
 
 mod algebra;
 mod arrangement;
 mod build;
 mod canonical;
+mod channel;
 mod conserve;
 mod displaced;
 mod error;
@@ -29,12 +33,15 @@ mod modes;
 mod neighbour_distance;
 mod normal;
 pub mod orders;
+mod own_cells;
 mod quadrature;
 mod rms;
 mod rules;
+mod viscosity;
 mod write;
 
 pub use arrangement::Arrangement;
+pub use channel::Channel as ChannelFlow;
 pub use conserve::{Conservation, Conserved};
 pub use error::DeriveError;
 pub use expansion::{Expansion, MOST_ORDER, OrderTerms, VanishingTerm};
@@ -45,5 +52,10 @@ pub use orders::{
     Amplitude, CoefficientOrder, ComponentOrder, Contribution, Crossing, Deviation, DisorderOrder,
     DisorderTerm, Displaced, Envelope, RegularOrder, Source, Term,
 };
+pub use own_cells::{row_amplitude, row_exponent, row_regular_exponent, row_second_exponent};
 pub use rms::{ComponentError, Model, RmsError, Setting, linearised};
+pub use viscosity::{
+    LatticeFlow, continuum_constant, continuum_response, lattice_response, second_derivative_of_one,
+    stress_divergence,
+};
 pub use write::{Format, Printed};

@@ -17,8 +17,10 @@ mod subject;
 mod target;
 mod token;
 pub mod tree;
+mod viscous;
 
 pub use error::LanguageError;
 pub use subject::{Coefficient, Subject};
 pub use target::{Derivative, Target};
 pub use tree::{Field, Operator};
+pub use viscous::{FlowDirection, ViscousModel};

@@ -118,7 +118,9 @@ fn is_of_survey(entry: &ClaimEntry) -> bool {
         ClaimKind::Ratio | ClaimKind::Trend | ClaimKind::Inequality => true,
         ClaimKind::Zero => false,
         ClaimKind::Constant => published.unit.as_deref() != Some(POWER),
-        ClaimKind::PowerLaw => published.exponents.as_ref().is_none_or(|e| e.dx_over_h.is_none()),
+        ClaimKind::PowerLaw => {
+            published.exponents.as_ref().is_none_or(|e| e.dx_over_h.is_none() || e.displacement.is_none())
+        }
     }
 }
 
@@ -219,7 +221,13 @@ fn row(entry: &ClaimEntry, shown: &[&str]) -> Row {
             }
             (Some(d), Some(x)) if number(&d.value) == "0" => number(&x.value),
             (Some(d), Some(x)) => format!("{}, {}", number(&d.value), number(&x.value)),
-            _ if entry.derived.is_some() => "0".into(),
+            _ if entry.derived.is_some() => {
+                let zero = entry.derived.as_ref().and_then(|column| column.zero.as_ref());
+                match zero.filter(|zero| !zero.holds).and_then(|zero| zero.bound) {
+                    Some(bound) => format!("up to {bound:.2e}"),
+                    None => "0".into(),
+                }
+            }
             _ => "–".into(),
         };
     let zero = entry.measured.as_ref().and_then(|column| column.zero.as_ref());

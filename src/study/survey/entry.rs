@@ -81,7 +81,7 @@ fn kind(published: &Published) -> ClaimKind {
     match published {
         Published::Constant { .. } => ClaimKind::Constant,
         Published::Ratio { .. } => ClaimKind::Ratio,
-        Published::Exponent { .. } => ClaimKind::PowerLaw,
+        Published::Exponent { .. } | Published::Order { .. } => ClaimKind::PowerLaw,
         Published::Zero => ClaimKind::Zero,
         Published::Trend { .. } => ClaimKind::Trend,
         Published::Relation { .. } => ClaimKind::Inequality,
@@ -93,7 +93,9 @@ fn margin(published: &Published) -> Option<f64> {
         Published::Constant { value, margin, .. } | Published::Ratio { value, margin } => {
             Some(margin * value.abs())
         }
-        Published::Exponent { margin, .. } | Published::Trend { margin, .. } => Some(*margin),
+        Published::Exponent { margin, .. }
+        | Published::Order { margin, .. }
+        | Published::Trend { margin, .. } => Some(*margin),
         Published::Zero | Published::Relation { .. } => None,
     }
 }
@@ -107,7 +109,7 @@ fn printed(published: &Published) -> Column {
         Published::Ratio { value, .. } => {
             Column { value: Some(number(*value)), unit: Some("1".into()), ..Column::default() }
         }
-        Published::Exponent { of, value, .. } => {
+        Published::Exponent { of, value, .. } | Published::Order { of, value, .. } => {
             Column { exponents: Some(exponents(*of, number(*value))), ..Column::default() }
         }
         Published::Zero => {
@@ -128,7 +130,7 @@ fn column(published: &Published, found: &Observed, by: Source) -> Column {
         Estimate::float(round(found.value), round(found.low), round(found.high), by)
     };
     match (published, found) {
-        (Published::Exponent { of, .. }, Observed::Number(found)) => {
+        (Published::Exponent { of, .. } | Published::Order { of, .. }, Observed::Number(found)) => {
             Column { exponents: Some(exponents(*of, number(found))), ..Column::default() }
         }
         (Published::Trend { margin, .. }, Observed::Number(slope)) => {

@@ -3,6 +3,7 @@
 //! A survey is a list of tasks whose results are plain data, stored as blocks, and a pure function from these to the
 //! report. The runner does the rest: the store, shards, threads, progress, interruption, verdicts over all cases.
 
+mod basa;
 mod chaussonnet;
 mod entry;
 mod heat;

@@ -31,6 +31,7 @@ struct Kind {
 }
 
 const KINDS: &[Kind] = &[
+    kind::<super::basa::BasaParameters>("basa"),
     kind::<ChaussonnetTable>("chaussonnet"),
     kind::<super::heat::Heat>("heat"),
     kind::<super::stiff::Stiff>("stiff"),
