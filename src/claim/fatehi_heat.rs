@@ -27,8 +27,6 @@ pub enum HeatStatement {
     EightNeighbours,
     /// §6.3: S4 at h = 1.5Δ is at least two orders better than S3 at 3.5Δ, N = 160².
     CheapAndBetter,
-    /// Eq. (49), first term: what is left of S3 at Δ → 0 goes with (Δ/h)⁴.
-    FloorOfS3,
     /// Eqs. (49), (50): the error of S3 at large radii goes with h², that is with (h/Δ)² at constant Δ.
     GrowsWithRadius(&'static str),
     /// §6.2: of S3 on irregular particles h = 1.5Δ is the worst.
@@ -62,7 +60,7 @@ impl HeatStatement {
         all.push(Self::TwoOrdersLower);
         all.extend(radii.map(|h| Self::SamePattern("S3", h)));
         all.extend(radii.map(|h| Self::SamePattern("S4", h)));
-        all.extend([Self::EightNeighbours, Self::CheapAndBetter, Self::FloorOfS3]);
+        all.extend([Self::EightNeighbours, Self::CheapAndBetter]);
         all.extend([Self::GrowsWithRadius("S3"), Self::GrowsWithRadius("S4")]);
         all.push(Self::WorstS3Irregular);
         all.extend([2.0, 2.5, 3.0, 3.5].map(Self::UnityS3Irregular));
@@ -141,12 +139,6 @@ impl HeatStatement {
                     sign: Sign::Greater,
                     right: "100",
                 },
-            ),
-            Self::FloorOfS3 => statement(
-                "S3-floor".into(),
-                "Eq. (49), first term",
-                "the part of the error of S3 that stays as Δ → 0 goes with (Δ/h)⁴".into(),
-                Published::Exponent { of: Variable::DxOverH, value: 4.0, margin: 0.5 },
             ),
             Self::GrowsWithRadius(scheme) => statement(
                 format!("grows-with-radius#{scheme}"),

@@ -181,11 +181,20 @@ impl<'a> Bench<'a> {
                 at_regular(number(count))
             }
             HeatStatement::GrowsWithRadius(scheme) => {
-                let least = if scheme == "S3" { 2.5 } else { 1.5 };
-                let radii = self.radii(scheme, 0.0).into_iter().filter(|h| *h >= least);
-                let points = radii.filter_map(|h| Some((1.0 / h, self.at(scheme, h, 0.0, largest)?[L2])));
-                let found = slope(&points.collect_vec());
-                found.map(|found| (of_n(largest, 0.0), Observed::Number(found))).into_iter().collect()
+                // Of the error in space alone, where the step in time does not hide it.
+                let of = |h: f64| self.select(scheme, h, 0.0, Boundary::CutOff, "exact");
+                let radii = self.radii(scheme, 0.0).into_iter().filter(|h| *h >= 2.5).collect_vec();
+                let finest = radii.iter().flat_map(|h| of(*h)).map(|(c, ..)| c.problem.n).max();
+                finest
+                    .and_then(|n| {
+                        let points = radii.iter().filter_map(|h| {
+                            let found = of(*h).into_iter().find(|(c, ..)| c.problem.n == n)?;
+                            Some((1.0 / h, found.2.errors.as_ref().ok()?[L2]))
+                        });
+                        Some((of_n(n, 0.0), Observed::Number(slope(&points.collect_vec())?)))
+                    })
+                    .into_iter()
+                    .collect()
             }
             HeatStatement::BestS3WorseThanWorstS4 => self.at_irregular(|e, n| {
                 let of = |scheme| {
@@ -223,12 +232,6 @@ impl<'a> Bench<'a> {
             }
             HeatStatement::CostOfS4 => self.cost("S4", 3.5, largest),
             HeatStatement::CostOfSmallS4 => self.cost("S4", 1.5, largest),
-            HeatStatement::FloorOfS3 => {
-                let radii = self.radii("S3", 0.0).into_iter().filter(|h| *h <= 2.5);
-                let points = radii.filter_map(|h| Some((1.0 / h, self.at("S3", h, 0.0, largest)?[L2])));
-                let found = slope(&points.collect_vec());
-                found.map(|found| (of_n(largest, 0.0), Observed::Number(found))).into_iter().collect()
-            }
         }
     }
 
