@@ -5,7 +5,7 @@ use crate::folder::Folder;
 #[test]
 fn every_parameter_has_a_default() {
     let folder = Folder::new();
-    folder.write("all.toml", "[study]\nkind = \"chaussonnet\"\n".to_owned());
+    folder.write("all.toml", "[study]\nkind = \"chaussonnet\"\n");
     let ran = folder.run_to(0, "plan all.toml");
     assert!(ran.stdout.contains("operators square η = 0.3125 h = 6.25e-5 K_x = 100"), "{}", ran.stdout);
 }
@@ -38,7 +38,7 @@ fn a_wrong_parameter_is_named_where_it_stands() {
 fn expectations_are_of_claims_that_exist() {
     let folder = Folder::new();
     let text = "[study]\nkind = \"chaussonnet\"\n\n[expect]\n\"chaussonnet-fit-25/hh\" = \"confirmed\"\n";
-    folder.write("bad.toml", text.to_owned());
+    folder.write("bad.toml", text);
     folder
         .run_to(2, "plan bad.toml")
         .says(&["chaussonnet-fit-25/hh", "the nearest is 'chaussonnet-fit-25/h'"]);

@@ -206,7 +206,7 @@ struct LayerRow {
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
 enum Found {
-    Spectrum(SpectrumRow, Vec<[f64; 2]>),
+    Spectrum(Box<SpectrumRow>, Vec<[f64; 2]>),
     Methods(Vec<MethodRow>),
     Layers(Vec<LayerRow>),
 }
@@ -273,7 +273,7 @@ impl StiffSurvey {
         let chop = 1e-7 * radius;
         let points =
             values.iter().map(|value| [value.re, chopped(value.im, chop)].map(|v| rounded(v * dx * dx)));
-        Ok(Found::Spectrum(row, points.collect()))
+        Ok(Found::Spectrum(Box::new(row), points.collect()))
     }
 
     fn methods(&self, scheme: &str, problem: &HeatProblem) -> Result<Found, TaskError> {

@@ -76,6 +76,9 @@ pub(super) struct ConsistencyPart {
     common: Arc<Common>,
 }
 
+/// A name, and two pairs of numbers.
+type Named = (String, [f64; 2], [f64; 2]);
+
 impl ConsistencyPart {
     pub(super) fn new(common: &Arc<Common>) -> Self {
         Self { common: Arc::clone(common) }
@@ -376,7 +379,7 @@ impl ConsistencyPart {
     }
 
     /// Errors of Eqs. (18) and (17) on v = (x, −y/2) on displaced particles.
-    fn divergence(&self) -> Result<Vec<(String, [f64; 2], [f64; 2])>, TaskError> {
+    fn divergence(&self) -> Result<Vec<Named>, TaskError> {
         let (kernel, square) = (&self.common.kernel, lattice_by_id("square")?);
         let support = rational_to_f64(&self.support()?);
         let mut all = Vec::new();

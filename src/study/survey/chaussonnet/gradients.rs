@@ -45,6 +45,9 @@ impl Along {
     }
 }
 
+/// What was derived, what was measured, and the ids of the fits behind it.
+type Columns = (Option<Observed>, Observed, Vec<String>);
+
 /// The slopes of a named error along h, η or K_x, measured (with its fit entered) and derived.
 pub(super) fn slopes(
     found: &Results<'_>,
@@ -52,7 +55,7 @@ pub(super) fn slopes(
     at: At,
     name: &str,
     along: Along,
-) -> Result<Option<(Option<Observed>, Observed, Vec<String>)>, TaskError> {
+) -> Result<Option<Columns>, TaskError> {
     let cases = along.cases(found, at);
     let points: Vec<_> =
         cases.iter().filter_map(|(x, at)| found.rms(*at, name).map(|(y, error)| (*x, y, error))).collect();
