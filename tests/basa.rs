@@ -31,7 +31,6 @@ fn cubic() -> Kernel {
 }
 
 /// Σ V (n·r)²(t·r)² (W′/r)/(r² + η²) is −2/K: in the continuum ∫ r W′ dV = −D and the mean of n_x²n_y² is 1/(D(D + 2)).
-/// Seen to fail with D (D + 1) in place of D (D + 2).
 #[test]
 fn the_factor_is_twice_d_plus_two() {
     use FlowDirection::{Compression, ShearAxis, ShearDiagonal};
@@ -76,7 +75,7 @@ fn the_factor_is_twice_d_plus_two() {
 }
 
 /// The spline and the sum as printed, Eqs. (11), (34): 4.24 was calibrated, 4.2351 is what a square lattice with R = 2h,
-/// Δ/h = 0.637, V = m/ρ, η = 0.1 h and shear along an axis asks for. Seen to fail with η left out (4.1959).
+/// Δ/h = 0.637, V = m/ρ, η = 0.1 h and shear along an axis asks for.
 #[test]
 fn the_calibrated_constant_is_that_of_the_lattice() {
     let h = 1.0 / 0.637;
@@ -126,7 +125,6 @@ fn the_calibrated_constant_is_that_of_the_lattice() {
     assert!((xi - 4.24).abs() < 0.006, "{xi}");
 }
 
-/// Seen to fail with the last term of model B's text left out.
 #[test]
 fn models_on_particles_give_what_was_derived() {
     for lattice in catalogue() {
@@ -177,7 +175,6 @@ fn model_e_is_a_component_of_b_inverse() {
 }
 
 /// Eq. (36) derived anew: at rest at t = 0, no slip, ∂u/∂t = ν ∂²u/∂y² + f. As printed it is none of these.
-/// Seen to fail with the sign of the modes turned.
 #[test]
 fn the_start_up_starts_from_rest() {
     let heights = || (0..20).map(|k| -0.95 + 0.1 * f64::from(k));
@@ -206,7 +203,6 @@ fn the_start_up_starts_from_rest() {
 }
 
 /// The first order in ξ of Eq. (15): what was differentiated against what was sampled, with cells of their own and without.
-/// Seen to fail without particle a's own cell.
 #[test]
 fn displaced_lines_err_as_derived() {
     let line = lattice_by_id("line").unwrap();
