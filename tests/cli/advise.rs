@@ -29,7 +29,8 @@ fn the_cheapest_that_meets_the_tolerance_comes_first() {
         let found = by_order[m].as_f64().unwrap_or(f64::NAN);
         assert!((found - expected).abs() <= 1e-9 * expected.abs() + 1e-12, "m = {m}: {found} and {expected}");
     }
-    folder.run_to(0, line).says(&["take", "runner-up", "weights a row"]);
+    let text = folder.run_to(0, line).stdout;
+    assert!(["take", "runner-up", "weights a row"].iter().all(|part| text.contains(part)), "{text}");
 }
 
 #[test]

@@ -75,8 +75,8 @@ fn unknown_names() {
         },
         Fault {
             good: "seed = 7",
-            bad: "seed = 7\nkind = |\"heat\"",
-            says: &["no study of kind 'heat'", "moment-orders"],
+            bad: "seed = 7\nkind = |\"viscosimetry\"",
+            says: &["no study of kind 'viscosimetry'", "moment-orders", "heat"],
         },
         Fault {
             good: "[claims]",
