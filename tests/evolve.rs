@@ -169,7 +169,7 @@ fn a_step_multiplies_a_mode_by_its_amplification() {
         assert!((u[0] - factor.re).abs() < 1e-12 && factor.im == 0.0, "{}: {} {factor}", method.id(), u[0]);
     }
     for stages in 2..60 {
-        let inside = 0.653 * f64::from(stages * stages - 1);
+        let inside = 0.6529 * f64::from(stages * stages - 1);
         let worst = (1..400).map(|k| {
             Explicit::Rkc(stages).amplification(Complex::new(-inside * f64::from(k) / 400.0, 0.0)).norm()
         });
