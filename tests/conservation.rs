@@ -8,8 +8,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::needless_range_loop)] // A failed unwrap is a failed test.
 
 mod patches;
-#[allow(dead_code)] // Of these the rotations alone.
-mod strategies;
+#[path = "strategies/rotations.rs"]
+mod rotations;
 
 use patches::{Patch, Recipe, conditions, noise};
 use proptest::prelude::*;
@@ -138,7 +138,7 @@ proptest! {
     /// its order says: a Laplacian as 1/s². That of a gradient turns as a vector.
     #[test]
     fn values_turn_and_scale_with_the_particles(
-        (dimension, q) in (2_usize..=3).prop_flat_map(|d| (Just(d), strategies::orthogonal(d))),
+        (dimension, q) in (2_usize..=3).prop_flat_map(|d| (Just(d), rotations::orthogonal(d))),
         scale in 0.2..5.0_f64,
         seed in any::<u64>(),
     ) {
