@@ -282,46 +282,6 @@ fn bad_knots_are_refused() {
 
 // -------------------------------------------------------------------------------------------------------- multi-indices
 
-fn binomial(n: u32, k: u32) -> u32 {
-    (0..k).fold(1, |product, i| product * (n - i) / (i + 1))
-}
-
-#[test]
-fn multi_indices_are_complete_sorted_and_weighted() {
-    for dimension in 1..=3usize {
-        for order in 0..=7u8 {
-            let all = MultiIndex::all(dimension, order).unwrap();
-            let d = dimension as u32;
-            assert_eq!(all.len() as u32, binomial(u32::from(order) + d - 1, d - 1));
-            assert!(all.is_sorted_by(|a, b| a < b), "strictly increasing, hence distinct");
-            assert!(all.iter().all(|index| index.order() == u32::from(order)));
-            // Every one of the D^p sequences of axes belongs to one multi-index.
-            let sequences: BigUint = all.iter().map(MultiIndex::multiplicity).sum();
-            assert_eq!(sequences, BigUint::from(d).pow(order.into()));
-        }
-    }
-    assert_eq!(MultiIndex::all(4, 1), Err(ExactError::Dimension { dimension: 4 }));
-    let letters: Vec<_> = MultiIndex::all(3, 2).unwrap().iter().map(MultiIndex::letters).collect();
-    assert_eq!(letters, ["xx", "xy", "xz", "yy", "yz", "zz"]);
-}
-
-#[test]
-fn multi_indices_read_add_and_subtract() {
-    let index = |text| MultiIndex::from_letters(text).unwrap();
-    assert_eq!(index("yxx").to_string(), "xxy");
-    assert_eq!(index("").to_string(), "1");
-    assert_eq!(index("xxxyy").factorial(), BigUint::from(12u32));
-    assert_eq!(index("xz") + index("xy"), index("xxyz"));
-    assert_eq!(index("xxy").checked_sub(index("xy")), Some(index("x")));
-    assert_eq!(index("xxy").checked_sub(index("z")), None);
-    assert!(index("zz") < index("xxx"), "the order comes first");
-    assert!(MultiIndex::from_letters("xq").is_err());
-    assert!(MultiIndex::from_letters(&"x".repeat(256)).is_err());
-    assert_eq!(MultiIndex::new([255, 0, 0]).checked_add(index("x")), None);
-    assert_eq!(serde_json::to_string(&index("yx")).unwrap(), r#""xy""#);
-    assert_eq!(serde_json::from_str::<MultiIndex>(r#""zx""#).unwrap(), index("xz"));
-}
-
 #[test]
 fn a_rotation_by_a_pythagorean_angle_keeps_the_radius() {
     let index = |text| MultiIndex::from_letters(text).unwrap();
@@ -702,65 +662,4 @@ proptest! {
             prop_assert!(a.div(&b).is_err());
         }
     }
-}
-
-// ------------------------------------------------------------------------------------------- orders, exponents, intervals
-
-#[test]
-fn the_smaller_of_two_orders_is_only_as_exact_as_what_is_known() {
-    use Order::{AtLeast, Exactly};
-    // Read `AtLeast(p)` as the set of orders from p on; the set of possible minima is what `min` must return.
-    let horizon = 12u32;
-    let members = |order: Order| match order {
-        Exactly(p) => p..=p,
-        AtLeast(p) => p..=horizon,
-    };
-    for p in 0..6 {
-        for q in 0..6 {
-            for (a, b) in [(Exactly(p), Exactly(q)), (Exactly(p), AtLeast(q)), (AtLeast(p), AtLeast(q))] {
-                let mut possible: Vec<u32> =
-                    members(a).flat_map(|i| members(b).map(move |j| i.min(j))).collect();
-                possible.sort_unstable();
-                possible.dedup();
-                let expected = if possible.len() == 1 { Exactly(possible[0]) } else { AtLeast(possible[0]) };
-                assert_eq!(a.min(b), expected, "{a:?} {b:?}");
-                assert_eq!(b.min(a), expected, "{b:?} {a:?}");
-            }
-        }
-    }
-    assert_eq!(Exactly(2).to_string(), "exactly 2");
-    assert_eq!(AtLeast(5).to_string(), "at least 5");
-    assert_eq!(serde_json::to_string(&AtLeast(5)).unwrap(), r#"{"at_least":5}"#);
-    assert!(Exactly(1).is_exact() && !AtLeast(1).is_exact());
-}
-
-#[test]
-fn exponents_are_rationals() {
-    let exponent: Exponent = "2.5".parse().unwrap();
-    assert_eq!(exponent.to_string(), "5/2");
-    assert_eq!(&exponent - &Exponent::from(ratio(1, 2)), Exponent::from(2));
-    assert_eq!(&exponent + &Exponent::from(-3), Exponent::from(ratio(-1, 2)));
-    assert!(exponent > Exponent::from(2));
-    assert_eq!(serde_json::to_string(&exponent).unwrap(), r#""5/2""#);
-    assert_eq!(serde_json::from_str::<Exponent>(r#""5/2""#).unwrap(), exponent);
-    let schema = serde_json::to_value(schemars::schema_for!(Exponent)).unwrap();
-    assert_eq!(schema["type"], "string");
-}
-
-#[test]
-fn intervals_hold_their_value() {
-    let interval = Interval::new(1.5, 1.0, 2.25).unwrap();
-    assert_eq!((interval.value(), interval.low(), interval.high(), interval.width()), (1.5, 1.0, 2.25, 1.25));
-    assert!(interval.contains(1.0) && interval.contains(2.25) && !interval.contains(2.26));
-    for (value, low, high) in
-        [(3.0, 1.0, 2.0), (0.0, 1.0, 2.0), (f64::NAN, 0.0, 1.0), (1.0, 0.0, f64::INFINITY)]
-    {
-        assert!(matches!(Interval::new(value, low, high), Err(ExactError::NotAnInterval { .. })));
-    }
-    let text = serde_json::to_string(&interval).unwrap();
-    assert_eq!(text, r#"{"value":1.5,"low":1.0,"high":2.25}"#);
-    assert_eq!(serde_json::from_str::<Interval>(&text).unwrap(), interval);
-    assert!(serde_json::from_str::<Interval>(r#"{"value":3.0,"low":1.0,"high":2.0}"#).is_err());
-    let schema = serde_json::to_value(schemars::schema_for!(Interval)).unwrap();
-    assert_eq!(schema["required"], serde_json::json!(["value", "low", "high"]));
 }
