@@ -172,7 +172,8 @@ impl Work {
                 points(lattice) * if ChaussonnetTable::is_3d(lattice) { 20_000 } else { 1000 },
             ),
             Self::Precision { storage } => {
-                (format!("arithmetic {storage:?}"), format!("L {}", table.domain_size_m), 5_000_000)
+                let name = super::precision::name_of(*storage);
+                (format!("arithmetic {name}"), format!("L {}", table.domain_size_m), 5_000_000)
             }
             Self::Checks { lattice } => {
                 (format!("checks {lattice}"), table.disorder(lattice, CHECKED_ETA), 10_000_000)

@@ -114,14 +114,11 @@ fn against_eta(found: &Results<'_>, report: &mut Report) -> Result<(), TaskError
             let (measured, fit) = slope(ladder("eta"), &points)?;
             let fits = vec![fit.id.clone()];
             report.fits.push(fit);
-            let derived = match found.model(lattice) {
-                Some(model) => {
-                    let derived =
-                        |eta: &f64| (*eta, model.consistency(name, *eta, found.table.h_over_dx), 0.0);
-                    let points: Vec<_> = found.table.eta.iter().map(derived).collect();
-                    Some(Observed::Number(slope(ladder("eta, derived"), &points)?.0))
-                }
-                None => None,
+            let derived = |eta: &f64| Some((*eta, found.derived_consistency(lattice, *eta, name)?, 0.0));
+            let derived: Vec<_> = found.table.eta.iter().filter_map(derived).collect();
+            let derived = match derived.len() {
+                0..3 => None,
+                _ => Some(Observed::Number(slope(ladder("eta, derived"), &derived)?.0)),
             };
             let claim = assertion("chaussonnet-consistency/linear-in-eta");
             let observed = Some(Observed::Number(measured));
@@ -165,9 +162,7 @@ fn comparisons(found: &Results<'_>, report: &mut Report) {
     for lattice in LATTICES {
         for eta in found.table.eta.iter().copied() {
             let of = |name: &str| measured(found, lattice, eta, h, name);
-            let model = found.model(lattice);
-            let derived =
-                |name: &str, eta: f64| model.map(|m| m.consistency(name, eta, found.table.h_over_dx));
+            let derived = |name: &str, eta: f64| found.derived_consistency(lattice, eta, name);
             let exactly = |value: Option<f64>| value.map(Measured::exactly);
             let largest = |values: [Option<Measured>; 3]| {
                 values.into_iter().flatten().max_by(|a, b| a.value.total_cmp(&b.value))
@@ -195,8 +190,7 @@ fn comparisons(found: &Results<'_>, report: &mut Report) {
                 for (id, name) in ids {
                     let claim = assertion(&format!("chaussonnet-consistency/{id}"));
                     let square = measured(found, "square", eta, h, name);
-                    let square_derived =
-                        found.model("square").map(|m| m.consistency(name, eta, found.table.h_over_dx));
+                    let square_derived = found.derived_consistency("square", eta, name);
                     let pair = |own: Option<Measured>, other: Option<Measured>| {
                         if lattice == "hexagonal" {
                             Some(Observed::Number(ratio(own?, other?)))

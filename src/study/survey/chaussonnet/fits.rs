@@ -32,7 +32,7 @@ struct Row {
     measured: f64,
     measured_low: f64,
     measured_high: f64,
-    derived_fitted_alike: Option<f64>,
+    derived_fitted_where_derived: Option<f64>,
     derived_exponent: Option<f64>,
 }
 
@@ -45,7 +45,8 @@ fn coefficients(found: &Results<'_>, report: &mut Report) -> Result<(), TaskErro
             continue;
         }
         let measured = four_coefficients(&points)?;
-        let derived = if derived_points.len() == points.len() {
+        let derivable = points.iter().filter(|[_, eta, ..]| Results::is_derived_at(*eta)).count();
+        let derived = if derived_points.len() == derivable && derivable >= 8 {
             Some(four_coefficients(&derived_points)?)
         } else {
             None
@@ -55,13 +56,14 @@ fn coefficients(found: &Results<'_>, report: &mut Report) -> Result<(), TaskErro
         let case = || found.case("square", None, &more);
         for (place, what) in ["h", "eta", "field-scale"].into_iter().enumerate() {
             let number = |fit: &FourCoefficients| Observed::Number(fit.exponents[place]);
-            // The coefficient of a law fitted to derived values is what its curvature makes of it: no interval.
+            // The coefficient of a law fitted to derived values is what its curvature makes of it: no interval. These values
+            // end before the largest η of the published fit, so that they say nothing of its exponent of η.
             let of_derived = |fit: &FourCoefficients| {
                 let exponent = fit.exponents[place].value;
                 let exponent = if exponent.abs() < 1e-12 { 0.0 } else { exponent };
                 Observed::Number(Measured::exactly(exponent))
             };
-            let derived = derived.as_ref().map(of_derived);
+            let derived = derived.as_ref().filter(|_| what != "eta").map(of_derived);
             let measured = Some(number(&measured));
             report.claims.push(entry(&assertion(&id(what)), case(), derived, measured, Vec::new()));
         }
@@ -129,7 +131,7 @@ fn table(
     derived: Option<&FourCoefficients>,
 ) -> Vec<crate::study::survey::Row> {
     let error = if published.field.starts_with('F') { "Λ" } else { "Ω" };
-    let row = |coefficient, printed: f64, found: Measured, alike: Option<f64>, power: Option<f64>| {
+    let row = |coefficient, printed: f64, found: Measured, fitted: Option<f64>, power: Option<f64>| {
         table_row(&Row {
             equation: published.equation,
             quantity: format!("{error}_x({}) on {}", published.operator, published.field),
@@ -138,11 +140,12 @@ fn table(
             measured: significant(found.value, 6),
             measured_low: significant(found.low, 6),
             measured_high: significant(found.high, 6),
-            derived_fitted_alike: alike.map(|x| if x.abs() < 1e-12 { 0.0 } else { significant(x, 6) }),
+            derived_fitted_where_derived: fitted
+                .map(|x| if x.abs() < 1e-12 { 0.0 } else { significant(x, 6) }),
             derived_exponent: power,
         })
     };
-    let alike = |place: usize| derived.map(|fit| fit.exponents[place].value);
+    let fitted = |place: usize| derived.map(|fit| fit.exponents[place].value);
     let [h, eta, scale] = measured.exponents;
     let of_h = if published.equation == 29 { 0.0 } else { -1.0 };
     vec![
@@ -153,9 +156,9 @@ fn table(
             derived.map(|fit| fit.prefactor.value),
             None,
         ),
-        row("a2 (h)", published.h, h, alike(0), Some(of_h)),
-        row("a3 (η)", published.eta, eta, alike(1), Some(1.0)),
-        row("a4 (K_x)", published.scale, scale, alike(2), Some(0.0)),
+        row("a2 (h)", published.h, h, fitted(0), Some(of_h)),
+        row("a3 (η)", published.eta, eta, fitted(1), Some(1.0)),
+        row("a4 (K_x)", published.scale, scale, fitted(2), Some(0.0)),
     ]
 }
 

@@ -80,7 +80,8 @@ pub(super) fn slopes(
     report.fits.push(fit);
     let derived: Vec<_> =
         cases.iter().filter_map(|(x, at)| found.derived(*at, name).map(|y| (*x, y, 0.0))).collect();
-    let derived = if derived.len() == points.len() && derived.iter().all(|(_, y, _)| *y > 0.0) {
+    // Along η the derived slope is that of the η at which there are derived errors.
+    let derived = if derived.len() >= 3 && derived.iter().all(|(_, y, _)| *y > 0.0) {
         Some(Observed::Number(slope(ladder(format!("{id}, derived")), &derived)?.0))
     } else {
         None

@@ -156,15 +156,17 @@ fn linear(found: &Results<'_>, report: &mut Report) -> Result<(), TaskError> {
     Ok(())
 }
 
-/// The geometric mean over all h, η and K_x on the square lattice of the ratio of two errors.
+/// The geometric mean over all h, η and K_x on the square lattice of the ratio of two errors; there is no derived one where
+/// some of the η are beyond it.
 fn mean_ratio(
     found: &Results<'_>,
     name: &str,
     other: &str,
     measured: bool,
 ) -> Result<Option<Observed>, TaskError> {
+    let all = all_points(found, name, true).len();
     let (own, other) = (all_points(found, name, measured), all_points(found, other, measured));
-    if own.is_empty() || own.len() != other.len() {
+    if own.is_empty() || own.len() != all || own.len() != other.len() {
         return Ok(None);
     }
     let logarithms: Vec<f64> = own.iter().zip(&other).map(|(a, b)| libm::log(a[3] / b[3])).collect();

@@ -28,6 +28,11 @@ pub(super) const STORAGES: [(&str, Storage); 10] = [
     ("f64, field scaled by K_x + 0.015 and normalised by K_x", Storage { excess: 0.015, ..DOUBLE }),
 ];
 
+/// What a way of storing numbers is called.
+pub(super) fn name_of(storage: Storage) -> &'static str {
+    STORAGES.iter().find(|(_, known)| *known == storage).map_or("", |(name, _)| *name)
+}
+
 /// An exponent of K_x.
 #[derive(Serialize)]
 struct Row {
@@ -62,7 +67,7 @@ fn storages(found: &Results<'_>, report: &mut Report) {
     let mut rows = Vec::new();
     for (work, by_case) in &found.precision {
         let Work::Precision { storage } = work else { continue };
-        let name = STORAGES.iter().find(|(_, known)| known == storage).map_or("", |(name, _)| *name);
+        let name = name_of(*storage);
         for ((eta, _), by_scale) in PRECISION_CASES.iter().zip(by_case) {
             for (taken, (operator, field)) in TAKEN.into_iter().enumerate() {
                 let errors: Vec<f64> = by_scale.iter().map(|errors| errors[taken]).collect();
