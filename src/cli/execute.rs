@@ -52,18 +52,21 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
         (Analysis::Orders(_), None) => unreachable!("a study of orders has a plan"),
         (Analysis::Survey(scene), _) => run_survey(scene, &options),
     });
-    let (seconds, stored) = progress.finish();
+    let (seconds, stored, timed) = progress.finish();
     let Some(report) = report? else {
         let name = arguments.scene.display();
         eprintln!("this shard's blocks are stored; when all are, `remainder merge {name}` writes the report");
         return Ok(Exit::AsExpected);
     };
-    let timings = json!({
+    let mut timings = json!({
         "wall_seconds": started.elapsed().as_secs_f64(),
         "threads": pool.current_num_threads(),
         "blocks_found_stored": stored,
         "task_seconds": seconds,
     });
+    if !timed.is_null() {
+        timings["timed"] = timed;
+    }
     write_report(&out, &report, &timings)?;
     if arguments.json {
         print_out(&to_json(&report));

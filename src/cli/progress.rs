@@ -22,6 +22,7 @@ struct State {
     done: u64,
     tenths: u64,
     seconds: BTreeMap<String, f64>,
+    timed: serde_json::Value,
 }
 
 impl Progress {
@@ -48,6 +49,7 @@ impl Progress {
                 state.stored += u64::from(stored);
                 self.bar.inc(cost);
             }
+            Event::Timed(value) => state.timed = value,
             Event::Finished { label, seconds, spared } => {
                 state.done = state.done.saturating_add(spared);
                 state.finished += 1;
@@ -63,10 +65,10 @@ impl Progress {
         }
     }
 
-    /// Clears the bar; seconds by task, and how many blocks were found in the store.
-    pub(super) fn finish(self) -> (BTreeMap<String, f64>, u64) {
+    /// Clears the bar; seconds by task, how many blocks were found in the store, and what a survey timed.
+    pub(super) fn finish(self) -> (BTreeMap<String, f64>, u64, serde_json::Value) {
         self.bar.finish_and_clear();
         let state = self.state.into_inner().unwrap_or_else(PoisonError::into_inner);
-        (state.seconds, state.stored)
+        (state.seconds, state.stored, state.timed)
     }
 }

@@ -50,6 +50,11 @@ pub fn assemble(program: &Program, cloud: &Cloud, rows: &[usize]) -> Result<Matr
     Ok(Matrix::from_rows(cloud.len(), entries))
 }
 
+/// How often an operator that reaches so far is applied when it is assembled: the number of colours.
+pub fn probes(cloud: &Cloud, reach: f64) -> u32 {
+    colour(cloud, 2.0 * reach).1
+}
+
 /// A colour for each particle such that no two of one colour are closer than `apart`, and how many there are.
 fn colour(cloud: &Cloud, apart: f64) -> (Vec<u32>, u32) {
     let dimension = cloud.dimension();

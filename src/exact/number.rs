@@ -1,4 +1,4 @@
-//! Numbers that sums over particles are taken in: f64, or rationals where nothing may be lost.
+//! Numbers that sums over particles are taken in: f64, f32 to see what it loses, or rationals where nothing may be lost.
 
 use super::{Rational, rational_to_f64};
 use num_bigint::BigInt;
@@ -6,7 +6,7 @@ use num_traits::{Signed, Zero};
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// f64 or [`Rational`].
+/// f64, f32, [`Rational`], or a kind of number of one's own.
 pub trait Number:
     Clone
     + Debug
@@ -67,6 +67,28 @@ impl Number for f64 {
         Some(std::f64::consts::PI)
     }
     const SINGULAR: f64 = 1e-12;
+}
+
+impl Number for f32 {
+    fn from_rational(value: &Rational) -> Self {
+        rational_to_f64(value) as f32
+    }
+    fn nought() -> Self {
+        0.0
+    }
+    fn is_nought(&self) -> bool {
+        *self == 0.0
+    }
+    fn size(&self) -> f64 {
+        f64::from(self.abs())
+    }
+    fn root(&self) -> Option<Self> {
+        (*self >= 0.0).then(|| self.sqrt())
+    }
+    fn pi() -> Option<Self> {
+        Some(std::f32::consts::PI)
+    }
+    const SINGULAR: f64 = 1e-6;
 }
 
 impl Number for Rational {

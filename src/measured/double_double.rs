@@ -1,5 +1,6 @@
 //! Numbers held as an unevaluated sum of two `f64`, after Dekker (1971) and Knuth (TAOCP 2, §4.2.2); no fused operations.
 
+use crate::exact::{Enclosure, Number, Rational, rational_to_f64};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// `hi + lo` with `|lo|` at most half an ulp of `hi`: about 106 bits. Magnitudes must stay well below 2⁹⁹⁶, where
@@ -110,6 +111,30 @@ impl Div for Dd {
         let third = (remainder - other * Dd::from(second)).hi / other.hi;
         ordered_sum(first, second) + Dd::from(third)
     }
+}
+
+impl Number for Dd {
+    fn from_rational(value: &Rational) -> Self {
+        let hi = rational_to_f64(value);
+        let lo = Rational::from_float(hi).map_or(0.0, |hi| rational_to_f64(&(value - hi)));
+        ordered_sum(hi, lo)
+    }
+    fn nought() -> Self {
+        Dd::ZERO
+    }
+    fn is_nought(&self) -> bool {
+        self.hi == 0.0
+    }
+    fn size(&self) -> f64 {
+        self.hi.abs()
+    }
+    fn root(&self) -> Option<Self> {
+        (self.hi >= 0.0).then(|| self.sqrt())
+    }
+    fn pi() -> Option<Self> {
+        Some(Self::from_rational(&Enclosure::pi(120).midpoint()))
+    }
+    const SINGULAR: f64 = 1e-27;
 }
 
 #[cfg(test)]

@@ -3,7 +3,9 @@
 //! Uses floating point and random numbers (and the exact lattice sums, the ground that both columns are checked against);
 //! never the derived column.
 
+mod bounded;
 mod coefficient;
+mod constants;
 mod domain;
 mod double_double;
 mod error;
@@ -15,6 +17,7 @@ pub mod precision;
 mod pressure;
 mod program;
 mod regular;
+mod rounding;
 mod row;
 mod sample;
 mod squared_error;
@@ -31,8 +34,9 @@ pub use error_sample::{SampledError, sampled_error};
 pub use momentum::{Totals, totals};
 pub use placed::{PlaceError, Placed};
 pub use pressure::{Correction, GradientForm, PressureErrors, PressureField, PressureSpec, pressure_errors};
-pub use program::{Fields, Program, ProgramError};
+pub use program::{Fields, Operations, Program, ProgramError};
 pub use regular::{RegularError, RegularNorm, RegularRung, RegularSpec, regular_rung};
+pub use rounding::{Rounding, RoundingError, computed, rounding};
 pub use row::{RowErrors, RowVolumes, row_errors};
 pub use sample::{
     CLOSEST, MomentStatistics, SampleBlock, SampleError, SampleSpec, Sampler, Summary, is_precise,

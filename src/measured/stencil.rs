@@ -119,6 +119,31 @@ pub fn stencil<T: Number>(
     })
 }
 
+/// An operator's value at particle i on a field given at each particle, taken as it is written, by component; and the B and B̂
+/// of particle i, where the operator has them.
+pub(super) fn value<T: Number>(
+    operator: &Operator,
+    ground: &dyn Ground<T>,
+    i: usize,
+    field: &dyn Fn(usize) -> Vec<T>,
+) -> Result<Applied<T>, StencilError> {
+    let mut walk = Walk::new(operator, ground, i);
+    walk.instead = Instead::Values(field);
+    let Value::Linear(terms) = walk.value(&operator.root)? else {
+        unreachable!("the parser has checked that operators are linear")
+    };
+    let components = terms.into_iter().flat_map(|term| term.parts).flat_map(|part| part.values.to_vec());
+    let rows = |tensors: &HashMap<usize, Tensor<T>>| tensors.get(&i).map(Tensor::rows);
+    Ok(Applied { components: components.collect(), b: rows(&walk.b), b_hat: rows(&walk.b_hat) })
+}
+
+/// What [`value`] finds.
+pub(super) struct Applied<T> {
+    pub(super) components: Vec<T>,
+    pub(super) b: Option<Vec<Vec<T>>>,
+    pub(super) b_hat: Option<Vec<Vec<T>>>,
+}
+
 /// An operator applied to monomials about particle i: its moments, without a stencil. What does not depend on the
 /// neighbour is taken once for all of them, so that an operator inside another costs one pass more and not one for each.
 pub(super) struct Moments<'a, T> {
@@ -135,7 +160,7 @@ impl<'a, T: Number> Moments<'a, T> {
     /// magnitudes.
     pub(super) fn of(&mut self, all: &[MultiIndex]) -> Result<(Vec<Vec<T>>, f64), StencilError> {
         self.walk.magnitude = 0.0;
-        self.walk.monomials = Some(all.to_vec());
+        self.walk.instead = Instead::Monomials(all.to_vec());
         self.walk.kept.clear();
         let Value::Linear(terms) = self.walk.value(&self.operator.root)? else {
             unreachable!("the parser has checked that operators are linear")
@@ -239,6 +264,16 @@ impl<T: Number> Value<T> {
     }
 }
 
+/// What stands in place of the field.
+enum Instead<'a, T> {
+    /// Nothing: it is left open.
+    Open,
+    /// Monomials about particle i, each in each component.
+    Monomials(Vec<MultiIndex>),
+    /// Its values: by component, at each particle.
+    Values(&'a dyn Fn(usize) -> Vec<T>),
+}
+
 /// The neighbours of a particle with their separations.
 type List<T> = Rc<[(usize, [T; 3])]>;
 
@@ -252,8 +287,8 @@ struct Walk<'a, T> {
     b_hat: HashMap<usize, Tensor<T>>,
     neighbours: HashMap<usize, List<T>>,
     least_norm: Vec<usize>,
-    /// Monomials about particle i in place of the field, each in each component; else it is left open.
-    monomials: Option<Vec<MultiIndex>>,
+    /// What stands in place of the field.
+    instead: Instead<'a, T>,
     /// Sums that depend on particle i alone, by the place of their node.
     kept: HashMap<*const Node, Value<T>>,
     /// With a monomial: the largest sum of magnitudes of any sum over the field.
@@ -271,7 +306,7 @@ impl<'a, T: Number> Walk<'a, T> {
             b_hat: HashMap::new(),
             neighbours: HashMap::new(),
             least_norm: Vec::new(),
-            monomials: None,
+            instead: Instead::Open,
             kept: HashMap::new(),
             magnitude: 0.0,
         };
@@ -303,9 +338,10 @@ impl<'a, T: Number> Walk<'a, T> {
             Kind::Renormalisation(p) => Ok(Value::Free(self.renormalisation(self.bound(*p).0)?)),
             Kind::RenormalisationHat(p) => Ok(Value::Free(self.renormalisation_hat(self.bound(*p).0)?)),
             Kind::OfPair(quantity, p, q) => Ok(Value::Free(self.pair(*quantity, *p, *q)?)),
-            Kind::Field(p) => Ok(Value::Linear(vec![match &self.monomials {
-                None => self.field(*p),
-                Some(all) => self.monomials_at(*p, all),
+            Kind::Field(p) => Ok(Value::Linear(vec![match &self.instead {
+                Instead::Open => self.field(*p),
+                Instead::Monomials(all) => self.monomials_at(*p, all),
+                Instead::Values(values) => self.value_at(*p, *values),
             }])),
             Kind::Add(nodes) => {
                 let mut values = nodes.iter().map(|node| self.value(node));
@@ -337,7 +373,7 @@ impl<'a, T: Number> Walk<'a, T> {
                 })?;
                 Ok(Value::Free(Tensor::from_rows(d, rows)))
             }
-            Kind::Sum { bound, centre, body } if self.monomials.is_some() && of_centre_alone(node) => {
+            Kind::Sum { bound, centre, body } if self.is_applied() && of_centre_alone(node) => {
                 if let Some(known) = self.kept.get(&std::ptr::from_ref(node)) {
                     return Ok(known.clone());
                 }
@@ -367,7 +403,7 @@ impl<'a, T: Number> Walk<'a, T> {
             let there = std::array::from_fn(|a| place[a].clone() - r[a].clone());
             self.bound[bound] = Some((*neighbour, there));
             let value = self.value(body)?;
-            if let (true, Value::Linear(terms)) = (self.monomials.is_some(), &value) {
+            if let (true, Value::Linear(terms)) = (self.is_applied(), &value) {
                 let parts = terms.iter().flat_map(|term| &term.parts).flat_map(|part| part.values.iter());
                 magnitude += parts.map(T::size).fold(0.0, f64::max);
             }
@@ -380,6 +416,21 @@ impl<'a, T: Number> Walk<'a, T> {
 
     fn list(&mut self, particle: usize) -> List<T> {
         self.neighbours.entry(particle).or_insert_with(|| self.ground.neighbours(particle).into()).clone()
+    }
+
+    fn is_applied(&self) -> bool {
+        !matches!(self.instead, Instead::Open)
+    }
+
+    fn value_at(&self, p: Particle, values: &dyn Fn(usize) -> Vec<T>) -> Term<T> {
+        let (particle, place) = self.bound(p);
+        let mut values = values(particle);
+        values.resize(3, T::nought());
+        let part = match self.field {
+            Field::Scalar => Tensor::scalar(self.dimension, values[0].clone()),
+            Field::Vector => Tensor::vector(self.dimension, &std::array::from_fn(|a| values[a].clone())),
+        };
+        Term { particle: APPLIED, place, parts: vec![part] }
     }
 
     fn monomials_at(&self, p: Particle, all: &[MultiIndex]) -> Term<T> {

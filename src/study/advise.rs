@@ -136,6 +136,35 @@ pub fn advise(request: &Request<'_>) -> Advice {
     advice
 }
 
+/// The derived error of one operator, by id, with one kernel at one R/Δ. `None` where it has no value, or none was derived.
+pub fn derived_error(
+    request: &Request<'_>,
+    operator: &str,
+    kernel: &Kernel,
+    support_over_dx: f64,
+) -> Option<Candidate> {
+    let entry = operators::by_id(operator).ok()?;
+    let nested = Coefficient::new(entry.id, 0).ok()?.is_nested();
+    evaluate(request, &open(request.lattice, entry.id, nested, kernel, support_over_dx))
+}
+
+fn open(
+    lattice: &Lattice,
+    operator: &'static str,
+    nested: bool,
+    kernel: &Kernel,
+    support_over_dx: f64,
+) -> Open {
+    let own = neighbours(lattice, support_over_dx);
+    let weights = if nested { neighbours(lattice, 2.0 * support_over_dx) + 1 } else { own + 1 };
+    Open { operator, nested, kernel: kernel.clone(), support_over_dx, neighbours: own, weights }
+}
+
+/// Particles in the support, the one in its middle left out. W vanishes at R: a particle there is no neighbour.
+fn neighbours(lattice: &Lattice, support_over_dx: f64) -> usize {
+    lattice.sites_within(support_over_dx * (1.0 - 1e-9)).len() - 1
+}
+
 /// All candidates within the budget, the cheapest first.
 fn candidates(request: &Request<'_>) -> Vec<Open> {
     let target = Target::plain(request.derivative);
@@ -145,31 +174,21 @@ fn candidates(request: &Request<'_>) -> Vec<Open> {
     let fitting: Vec<(&'static str, bool)> = fitting
         .filter_map(|entry| Some((entry.id, Coefficient::new(entry.id, 0).ok()?.is_nested())))
         .collect();
-    let mut open = Vec::new();
+    let mut all = Vec::new();
     for quarter in SUPPORTS {
         let support_over_dx = 0.25 * f64::from(quarter);
-        // W vanishes at R: a particle there is no neighbour.
-        let within = |radius: f64| request.lattice.sites_within(radius * (1.0 - 1e-9)).len() - 1;
-        let neighbours = within(support_over_dx);
+        let neighbours = neighbours(request.lattice, support_over_dx);
         if request.budget.is_some_and(|budget| neighbours > budget) || neighbours == 0 {
             continue;
         }
         for kernel in kernel::catalogue() {
             for (operator, nested) in &fitting {
-                let weights = if *nested { within(2.0 * support_over_dx) + 1 } else { neighbours + 1 };
-                open.push(Open {
-                    operator,
-                    nested: *nested,
-                    kernel: kernel.clone(),
-                    support_over_dx,
-                    neighbours,
-                    weights,
-                });
+                all.push(open(request.lattice, operator, *nested, &kernel, support_over_dx));
             }
         }
     }
-    open.sort_by_key(|open| (open.weights, open.nested, open.neighbours));
-    open
+    all.sort_by_key(|open| (open.weights, open.nested, open.neighbours));
+    all
 }
 
 /// The error of a candidate, as far as it takes to see that it is too large.

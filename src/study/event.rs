@@ -18,6 +18,8 @@ pub enum Event {
         /// Whether it was found in the store.
         stored: bool,
     },
+    /// What was timed, for `timings.json`.
+    Timed(serde_json::Value),
     /// A task has all its blocks.
     Finished {
         /// What it was.

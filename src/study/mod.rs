@@ -20,7 +20,7 @@ mod store;
 mod survey;
 mod tables;
 
-pub use advise::{Advice, Candidate, Request as AdviceRequest, advise};
+pub use advise::{Advice, Candidate, Request as AdviceRequest, advise, derived_error};
 pub use analysis::Analysis;
 pub use derive::DerivedColumn;
 pub use error::StudyError;

@@ -1,5 +1,6 @@
 //! A compiled operator, and what it is applied to.
 
+use super::super::constants::vanishes_on_constants;
 use super::ProgramError;
 use super::expression::Arena;
 use super::instruction::Source;
@@ -26,7 +27,8 @@ pub enum Fields<'a> {
 /// An operator compiled for one kernel in one dimension.
 ///
 /// Sums run over the particles in the support, the particle itself included; there 1/|r_ij|, and any other reciprocal of a
-/// pair's quantity that vanishes, counts as 0. h is R over [`Kernel::support_over_h`]; ρ, m and μ are the cloud's fields
+/// pair's quantity that vanishes, counts as 0. An operator that vanishes on constants is applied to u_j − u_i, whatever way it is
+/// written: a large constant in the field then costs no digits. h is R over [`Kernel::support_over_h`]; ρ, m and μ are the cloud's fields
 /// `density`, `mass` and `viscosity`. The same bits on any number of threads.
 ///
 /// # Examples
@@ -70,7 +72,10 @@ impl Program {
             Lowering { arena: Arena::default(), kernel: &functions, dimension, smoothing_length };
         let components = lowering.lower(&operator.root)?;
         let mut arena = lowering.arena;
-        let passes = schedule::passes(&mut arena, &functions, dimension, &components);
+        let mut passes = schedule::passes(&mut arena, &functions, dimension, &components);
+        if schedule::takes_values(&passes) && vanishes_on_constants(operator, dimension) {
+            schedule::take_differences(&mut passes);
+        }
         Ok(Self {
             dimension,
             field: operator.field,
@@ -114,6 +119,10 @@ impl Program {
             stored.push(Columns { values: Cow::Owned(values), stride: pass.columns.len(), offset: 0 });
         }
         Ok(stored.pop().map(|columns| columns.values.into_owned()).unwrap_or_default())
+    }
+
+    pub(super) fn all_passes(&self) -> &[Pass] {
+        &self.passes
     }
 
     pub(super) fn dimension(&self) -> usize {

@@ -144,6 +144,11 @@ impl RadialFunctions {
 }
 
 impl Piece {
+    /// Additions, multiplications and the root of an evaluation.
+    pub(super) fn operations(&self) -> u64 {
+        (2 * self.coefficients.len() + self.zeros + self.inverse_power + 1) as u64
+    }
+
     fn new(piece: &RadialPiece, k: usize, kappa: &Rational, sigma: f64) -> Self {
         // q = κ (x_right − s): numerator in s; G_k in units of R carries κ^{2k} and κ^{-n} from q^{-n}.
         let q_of_s = Polynomial::new(vec![piece.to.clone(), -kappa.clone()]);

@@ -11,6 +11,7 @@
 //! hundred pairs at a time. Lengths are in units of R throughout; the result is given its unit at the end.
 
 mod compile;
+mod count;
 mod error;
 mod expression;
 mod instruction;
@@ -22,4 +23,5 @@ mod schedule;
 mod solve;
 
 pub use compile::{Fields, Program};
+pub use count::Operations;
 pub use error::ProgramError;

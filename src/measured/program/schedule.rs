@@ -507,15 +507,49 @@ fn terms_of(terms: &[(super::expression::Real, Id)]) -> Vec<(f64, Id)> {
     terms.iter().map(|(coefficient, id)| (coefficient.get(), *id)).collect()
 }
 
+/// Whether the field is read where it stands, and by the last pass alone.
+pub(super) fn takes_values(passes: &[Pass]) -> bool {
+    let Some((last, earlier)) = passes.split_last() else { return false };
+    let reads = |operation: &Operation| {
+        matches!(operation, Operation::Gather(Source::Field(_)) | Operation::Own(Source::Field(_)))
+    };
+    !earlier.iter().any(Pass::reads_field) && last.operations().any(reads)
+}
+
+/// Has the last pass read u − u_i for u.
+pub(super) fn take_differences(passes: &mut [Pass]) {
+    let Some(last) = passes.last_mut() else { return };
+    let instructions = last.pairs.instructions.iter_mut().chain(&mut last.particles.instructions);
+    for instruction in instructions {
+        if let Instruction::Compute { operation, .. } = instruction {
+            match operation {
+                Operation::Gather(source @ Source::Field(_)) => *operation = Operation::Difference(*source),
+                Operation::Own(Source::Field(_)) => *operation = Operation::Fill(0.0),
+                _ => {}
+            }
+        }
+    }
+}
+
 impl Pass {
-    /// Where its code reads from.
-    pub(super) fn sources(&self) -> impl Iterator<Item = Source> {
+    fn operations(&self) -> impl Iterator<Item = &Operation> {
         let instructions = self.pairs.instructions.iter().chain(&self.particles.instructions);
         instructions.filter_map(|instruction| match instruction {
-            Instruction::Compute {
-                operation: Operation::Gather(source) | Operation::Difference(source) | Operation::Own(source),
-                ..
-            } => Some(*source),
+            Instruction::Compute { operation, .. } => Some(operation),
+            _ => None,
+        })
+    }
+
+    fn reads_field(&self) -> bool {
+        self.sources().any(|source| matches!(source, Source::Field(_)))
+    }
+
+    /// Where its code reads from.
+    pub(super) fn sources(&self) -> impl Iterator<Item = Source> {
+        self.operations().filter_map(|operation| match operation {
+            Operation::Gather(source) | Operation::Difference(source) | Operation::Own(source) => {
+                Some(*source)
+            }
             _ => None,
         })
     }

@@ -6,10 +6,12 @@
 mod basa;
 mod chaussonnet;
 mod entry;
+mod extremes;
 mod heat;
 mod run;
 mod scene;
 mod stiff;
+mod work_precision;
 
 pub use entry::{Row, entry, table_row};
 pub use run::run_survey;
@@ -57,4 +59,9 @@ pub trait Survey: Send + Sync {
     /// # Errors
     /// [`TaskError`] if a result is not what [`Survey::compute`] makes.
     fn report(&self, results: &[Value], report: &mut Report) -> Result<(), TaskError>;
+
+    /// What its tasks timed, for `timings.json`: nothing of it may enter the report.
+    fn timings(&self, _results: &[Value]) -> Value {
+        Value::Null
+    }
 }

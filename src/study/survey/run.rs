@@ -68,6 +68,10 @@ pub fn run_survey(scene: &SurveyScene, options: &RunOptions<'_>) -> Result<Optio
     if options.shard.is_some() {
         return Ok(None);
     }
+    let timed = scene.survey.timings(&done);
+    if !timed.is_null() {
+        (options.events)(Event::Timed(timed));
+    }
     report(scene, &done).map(Some)
 }
 

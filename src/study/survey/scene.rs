@@ -33,8 +33,10 @@ struct Kind {
 const KINDS: &[Kind] = &[
     kind::<super::basa::BasaParameters>("basa"),
     kind::<ChaussonnetTable>("chaussonnet"),
+    kind::<super::extremes::Extremes>("extremes"),
     kind::<super::heat::Heat>("heat"),
     kind::<super::stiff::Stiff>("stiff"),
+    kind::<super::work_precision::WorkPrecision>("work-precision"),
 ];
 
 /// The names of the kinds, and the schemas of their scenes.
