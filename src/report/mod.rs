@@ -3,6 +3,7 @@
 mod advise;
 mod assemble;
 mod expansion;
+pub mod figure;
 mod layout;
 mod markdown;
 mod orders;
