@@ -21,6 +21,8 @@ pub(super) enum Command {
     Run(RunArguments),
     /// Make the report of a scene whose shards have been run
     Merge(MergeArguments),
+    /// Make pages to look at from reports
+    Report(ReportArguments),
     /// Say what a scene would compute, and what it leaves out
     Plan(PlanArguments),
     /// Certified moment sums over a lattice, to any number of digits or in closed form
@@ -65,6 +67,9 @@ pub(super) struct RunArguments {
     /// Print the report as JSON instead of a table
     #[arg(long)]
     pub(super) json: bool,
+    /// Write a page to look at as well, report.html, and the index of reports/
+    #[arg(long)]
+    pub(super) html: bool,
     /// Further folders of finished blocks to read from
     #[arg(skip)]
     pub(super) from: Vec<PathBuf>,
@@ -88,6 +93,9 @@ pub(super) struct MergeArguments {
     /// Print the report as JSON instead of a table
     #[arg(long)]
     pub(super) json: bool,
+    /// Write a page to look at as well, report.html, and the index of reports/
+    #[arg(long)]
+    pub(super) html: bool,
 }
 
 impl MergeArguments {
@@ -100,9 +108,26 @@ impl MergeArguments {
             shard: None,
             threads: None,
             json: self.json,
+            html: self.html,
             from: self.from.clone(),
         }
     }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ReportArguments {
+    /// Folders with a report.json, or folders of such folders
+    #[arg(required = true, value_name = "REPORT")]
+    pub(super) reports: Vec<PathBuf>,
+    /// Write a page for each, report.html
+    #[arg(long, required_unless_present = "figures")]
+    pub(super) html: bool,
+    /// Write every figure as an SVG file to a folder of the report's name under this one
+    #[arg(long, value_name = "DIR")]
+    pub(super) figures: Option<PathBuf>,
+    /// Folder of the pages and their index [default: each page beside its report]
+    #[arg(long, value_name = "DIR", requires = "html")]
+    pub(super) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -4,6 +4,7 @@ mod advise;
 mod assemble;
 mod expansion;
 pub mod figure;
+pub mod html;
 mod layout;
 mod markdown;
 mod orders;
