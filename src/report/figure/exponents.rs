@@ -34,9 +34,10 @@ pub fn exponents(report: &Report) -> Option<Figure> {
         [ends[0].min(point.x), ends[1].max(point.x)]
     });
     figure.layers.push(Layer::line("equal", 0, ends.map(|end| [end, end]).to_vec(), Dash::Solid));
+    let several = all.iter().any(|(dimension, _)| all.first().is_some_and(|(first, _)| first != dimension));
     for dimension in 1..=3 {
         // Side by side, so that the three dimensions do not hide one another.
-        let shift = 0.05 * (f64::from(dimension) - 2.0);
+        let shift = if several { 0.05 * (f64::from(dimension) - 2.0) } else { 0.0 };
         let shifted = |point: &Point| Point { x: point.x + shift, ..*point };
         let own: Vec<Point> =
             all.iter().filter(|(d, _)| *d == dimension).map(|(_, point)| shifted(point)).collect();
@@ -45,6 +46,8 @@ pub fn exponents(report: &Report) -> Option<Figure> {
             figure.layers.push(Layer::points(name, usize::from(dimension), own));
         }
     }
-    figure.notes.push("1-D and 3-D are moved sideways by 0.05 so that they can be told apart.".into());
+    if several {
+        figure.notes.push("1-D and 3-D are moved sideways by 0.05 so that they can be told apart.".into());
+    }
     Some(figure)
 }

@@ -3,7 +3,9 @@
 //! [`figures`] makes all of a report's figures from its JSON alone; SVG and PGFPlots draw the same [`Figure`].
 
 mod exponents;
+mod kernels;
 mod ladder;
+mod lattice;
 mod names;
 mod range;
 mod series;
@@ -159,11 +161,20 @@ impl Figure {
     }
 }
 
-/// All figures of a report, in the order of a page: exponents, those of the papers, ladders, spectra, work.
+/// All figures of a report, in the order of a page: exponents, those of the papers, spectra, work, drawings,
+/// ladders.
 pub fn figures(report: &Report) -> Vec<Figure> {
     let mut all: Vec<Figure> = exponents(report).into_iter().collect();
     all.extend(overviews(report));
+    all.extend(drawings(report));
     all.extend(ladders(report).into_iter().map(|ladder| ladder.figure));
+    all
+}
+
+/// Drawings of what was computed: particles and kernels.
+pub fn drawings(report: &Report) -> Vec<Figure> {
+    let mut all = lattice::figures(report);
+    all.extend(kernels::figures(report));
     all
 }
 

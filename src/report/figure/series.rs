@@ -56,44 +56,82 @@ fn panel_part(lines: &[Line]) -> Option<usize> {
 fn panels(series: &Series) -> Vec<Figure> {
     let number = series.figure.as_ref().map(|figure| figure.trim_start_matches("Fig. ").to_owned());
     let subject = format!("{} against {}", series.y.name, series.x.name);
-    let Some(part) = panel_part(&series.lines) else {
-        let mut figure = Figure::new(series.id.clone(), subject, series.x.clone(), series.y.clone());
-        figure.number = number;
-        fill(&mut figure, series.lines.iter(), None);
-        return vec![figure];
-    };
-    let values = distinct(series.lines.iter().filter_map(|line| parts(line).0.get(part).copied()));
-    let panel = |value: &&str| {
-        let (id, title) = (format!("{}/{value}", series.id), format!("{subject}: {value}"));
-        let mut figure = Figure::new(id, title, series.x.clone(), series.y.clone());
+    let panel = |id: String, title: &str, lines: &[&Line], part: Option<usize>| {
+        let mut figure = Figure::new(id, "", series.x.clone(), series.y.clone());
         figure.number.clone_from(&number);
-        // Lines without this part, such as an exact solution, stand in every panel.
-        let own = series.lines.iter().filter(|line| parts(line).0.get(part).is_none_or(|own| own == value));
-        fill(&mut figure, own, Some(part));
+        if spans_decades(lines) && !figure.y.log {
+            figure.y.log = true;
+            figure.notes.push("The ordinate spans decades and is drawn logarithmically.".into());
+        }
+        let common = common_parts(lines, part);
+        let shared: Vec<&str> = common.iter().map(|(_, value)| *value).collect();
+        let told: Vec<&str> = [title].into_iter().chain(shared).filter(|text| !text.is_empty()).collect();
+        figure.title = match told.as_slice() {
+            [] => subject.clone(),
+            told => format!("{subject}: {}", told.join(", ")),
+        };
+        let skipped: Vec<usize> = part.into_iter().chain(common.iter().map(|(part, _)| *part)).collect();
+        fill(&mut figure, lines, &skipped);
+        figure.notes.push(format!("Series {} of the report.", series.id));
         figure
     };
-    values.iter().map(panel).collect()
+    let Some(part) = panel_part(&series.lines) else {
+        return vec![panel(series.id.clone(), "", &series.lines.iter().collect::<Vec<_>>(), None)];
+    };
+    let values = distinct(series.lines.iter().filter_map(|line| parts(line).0.get(part).copied()));
+    let one = |value: &&str| {
+        // Lines without this part, such as an exact solution, stand in every panel.
+        let own = series.lines.iter().filter(|line| parts(line).0.get(part).is_none_or(|own| own == value));
+        panel(format!("{}/{value}", series.id), value, &own.collect::<Vec<_>>(), Some(part))
+    };
+    values.iter().map(one).collect()
 }
 
-/// Puts lines into a figure; `panel` is the part of their names that the title says.
-fn fill<'a>(figure: &mut Figure, lines: impl Iterator<Item = &'a Line>, panel: Option<usize>) {
+/// Whether a straight axis would press most of the values onto zero.
+fn spans_decades(lines: &[&Line]) -> bool {
+    let mut values: Vec<f64> =
+        lines.iter().flat_map(|line| &line.points).filter_map(|point| point.get(1)).copied().collect();
+    values.sort_by(f64::total_cmp);
+    match (values.first(), values.get(values.len() / 2), values.last()) {
+        (Some(least), Some(middle), Some(most)) => *least > 0.0 && *most > 100.0 * middle,
+        _ => false,
+    }
+}
+
+/// The parts that all names have and share, beside that of the panel: they are said once.
+fn common_parts<'a>(lines: &[&'a Line], panel: Option<usize>) -> Vec<(usize, &'a str)> {
+    let names: Vec<Vec<&str>> = lines.iter().map(|line| parts(line).0).collect();
+    let Some(first) = names.first().filter(|_| names.len() > 1) else { return Vec::new() };
+    // One part at least has to stay as the name.
+    let shared = |(part, value): &(usize, &'a str)| {
+        Some(*part) != panel && names.iter().all(|name| name.get(*part) == Some(value))
+    };
+    let all: Vec<(usize, &str)> = first.iter().copied().enumerate().filter(shared).collect();
+    if all.len() + usize::from(panel.is_some()) < first.len() { all } else { Vec::new() }
+}
+
+/// Puts lines into a figure; what the parts `skipped` of their names say stands in the title.
+fn fill(figure: &mut Figure, lines: &[&Line], skipped: &[usize]) {
     let mut groups: Vec<String> = Vec::new();
-    let mut hidden = 0;
+    let mut measured: Vec<String> = Vec::new();
+    let (mut hidden, mut any_derived) = (0, false);
     for line in lines {
         let (name_parts, derived) = parts(line);
-        let told = name_parts.iter().enumerate().filter(|(index, _)| Some(*index) != panel);
-        let group = told.map(|(_, part)| *part).collect::<Vec<_>>().join(", ");
-        // A name that comes twice is another group, unless it is the derived line of the first.
-        let taken = figure.layers.iter().filter(|layer| layer.name.as_ref() == Some(&said(&group, derived)));
-        let group = match taken.count() {
-            0 => group,
-            again => format!("{group} ({})", again + 1),
+        let told = name_parts.iter().enumerate().filter(|(index, _)| !skipped.contains(index));
+        let name = told.map(|(_, part)| *part).collect::<Vec<_>>().join(", ");
+        // A name that comes twice is another group; a derived line belongs to the measured one before it.
+        let again = measured.iter().filter(|known| **known == name).count();
+        let group = match again + usize::from(!derived) {
+            0 | 1 => name.clone(),
+            count => format!("{name} ({count})"),
         };
+        if !derived {
+            measured.push(name);
+        }
         let colour = groups.iter().position(|known| *known == group).unwrap_or_else(|| {
             groups.push(group.clone());
             groups.len() - 1
         }) + 1;
-        let name = said(&group, derived);
         let shown: Vec<Point> = line
             .points
             .iter()
@@ -107,20 +145,21 @@ fn fill<'a>(figure: &mut Figure, lines: impl Iterator<Item = &'a Line>, panel: O
         hidden += line.points.len() - shown.len();
         let path: Vec<[f64; 2]> = shown.iter().map(|point| [point.x, point.y]).collect();
         if derived {
-            figure.layers.push(Layer::line(name, colour, path, Dash::Dashed));
+            any_derived = true;
+            figure.layers.push(Layer::line("", colour, path, Dash::Dashed).unnamed());
         } else if shown.len() >= DENSE {
             let dash = [Dash::Solid, Dash::Dashed, Dash::Dotted][(colour - 1) % 3];
-            figure.layers.push(Layer::line(name, colour, path, dash));
+            figure.layers.push(Layer::line(group, colour, path, dash));
         } else {
-            figure.layers.push(Layer::line(name.clone(), colour, path, Dash::Solid).unnamed());
-            figure.layers.push(Layer::points(name, colour, shown));
+            figure.layers.push(Layer::line("", colour, path, Dash::Solid).unnamed());
+            figure.layers.push(Layer::points(group, colour, shown));
         }
+    }
+    if any_derived {
+        // One entry of the legend for all of them: their colours are those of what was measured.
+        figure.layers.push(Layer::line("derived", 0, Vec::new(), Dash::Dashed));
     }
     if hidden > 0 {
         figure.notes.push(format!("{hidden} values at zero have no place on a logarithmic axis."));
     }
-}
-
-fn said(group: &str, derived: bool) -> String {
-    if derived { format!("{group}, derived") } else { group.to_owned() }
 }

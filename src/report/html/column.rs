@@ -94,7 +94,7 @@ pub(super) fn summary(entries: &[&ClaimEntry], which: Which) -> String {
         let cells = distinct(&own);
         let told = match cells.as_slice() {
             [only] => only.clone(),
-            [one, two] if which != Which::Measured => format!("{one} or {two}"),
+            [one, two] if which != Which::Measured => format!("{one} or<br/>{two}"),
             _ => spread(&own, which).unwrap_or_else(|| format!("{} cases", own.len())),
         };
         let head = if dimensions.len() > 1 { format!("<b>{dimension}-D</b> ") } else { String::new() };

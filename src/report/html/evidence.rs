@@ -49,8 +49,9 @@ fn formulas(page: &mut String, entry: &ClaimEntry) {
         );
     }
     let from = Which::Derived.of(entry).and_then(|column| column.from.as_ref());
-    if let Some(from) = from {
-        let _ = write!(page, "<p>The derived order comes from {}.</p>", rich(from));
+    // The reason of the verdict mostly says it already.
+    if let Some(from) = from.filter(|from| !entry.why.contains(from.as_str())) {
+        let _ = write!(page, "<p>The derived order: {}.</p>", rich(from));
     }
 }
 
@@ -146,7 +147,7 @@ fn points(page: &mut String, fit: &Fit) {
     let _ = write!(
         page,
         "<details><summary>Points and residuals</summary><p class=\"small\">Interval: {}.</p>\
-         <div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Points of the fit\"><table><thead><tr>",
+         <div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Points of the fit\"><table><thead><tr>",
         rich(&fit.interval)
     );
     let mut heads = vec![rich(&fit.x.name), "y".into()];

@@ -80,7 +80,8 @@ pub(super) fn short_order(exponents: &Exponents) -> String {
         format!("{}<sup>{value}</sup>", base.html)
     };
     let all: Vec<String> = factors(exponents).iter().map(factor).collect();
-    if all.is_empty() { "O(1)".into() } else { all.join(" ") }
+    // No line may break inside a product of powers.
+    if all.is_empty() { "1".into() } else { all.join("\u{a0}") }
 }
 
 /// The exponents that were measured, each with its interval; what follows from the scaling of lengths is not repeated.
@@ -115,7 +116,7 @@ mod tests {
             dx_over_h: exact("1/2"),
             ..Exponents::default()
         };
-        assert_eq!(short_order(&exponents), "d̃ h<sup>−2</sup> (Δ/h)<sup>1/2</sup>");
+        assert_eq!(short_order(&exponents), "d̃\u{a0}h<sup>−2</sup>\u{a0}(Δ/h)<sup>1/2</sup>");
         let formula = order(&exponents);
         assert!(formula.contains("<msup><mi>h</mi><mrow><mo>−</mo><mn>2</mn></mrow></msup>"), "{formula}");
         assert!(formula.contains("<mfrac><mn>1</mn><mn>2</mn></mfrac>"), "{formula}");

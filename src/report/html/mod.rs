@@ -17,7 +17,7 @@ mod write;
 pub use index::{IndexEntry, index_page};
 pub use write::{Placed, ReadError, read_report, write_pages};
 
-use super::figure::{Figure, Ladder, exponents, ladders, overviews};
+use super::figure::{Figure, Ladder, drawings, exponents, ladders, overviews};
 use super::rich::escaped;
 use super::svg::{self, Size};
 use crate::record::Report;
@@ -74,6 +74,7 @@ fn render(report: &Report, ladders: &[Ladder], links: Links<'_>, detail: Detail)
     body.push_str("</header>\n<main>");
     verdicts::verdicts(&mut body, report, ladders, detail);
     figures(&mut body, report, ladders, detail);
+    computed(&mut body, report);
     tables::tables(&mut body, report);
     left_out(&mut body, report);
     references(&mut body, report);
@@ -84,7 +85,9 @@ fn render(report: &Report, ladders: &[Ladder], links: Links<'_>, detail: Detail)
 
 fn contents(body: &mut String, report: &Report) {
     body.push_str("<nav aria-label=\"Contents\"><ul><li><a href=\"#verdicts\">Verdicts</a></li>");
-    body.push_str("<li><a href=\"#figures\">Figures</a></li>");
+    body.push_str(
+        "<li><a href=\"#figures\">Figures</a></li><li><a href=\"#computed\">What was computed</a></li>",
+    );
     let no_table = report.tables.is_empty()
         && report.runs.is_empty()
         && report.viscosity_constants.is_empty()
@@ -116,12 +119,23 @@ fn figure(body: &mut String, figure: &Figure) {
     body.push_str("</figcaption></figure>\n");
 }
 
+fn computed(body: &mut String, report: &Report) {
+    let shown = drawings(report);
+    if shown.is_empty() {
+        return;
+    }
+    body.push_str("<section aria-labelledby=\"computed\"><h2 id=\"computed\">What was computed</h2><div class=\"figures\">\n");
+    for drawing in &shown {
+        figure(body, drawing);
+    }
+    body.push_str("</div></section>\n");
+}
+
 fn figures(body: &mut String, report: &Report, ladders: &[Ladder], detail: Detail) {
     body.push_str(
         "<section aria-labelledby=\"figures\"><h2 id=\"figures\">Figures</h2><div class=\"figures\">\n",
     );
-    let overview = exponents(report);
-    for shown in overview.iter().chain(&overviews(report)) {
+    for shown in exponents(report).iter().chain(&overviews(report)) {
         figure(body, shown);
     }
     body.push_str("</div>");

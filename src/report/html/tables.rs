@@ -47,7 +47,7 @@ fn table(page: &mut String, name: &str, rows: &[Value]) {
     let _ = write!(
         page,
         "<details class=\"table\"{open}><summary><h3>{name}</h3> <small>{} rows</small></summary>\
-         <div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table {name}\"><table><thead><tr>",
+         <div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Table {name}\"><table><thead><tr>",
         rows.len()
     );
     for name in &keys {

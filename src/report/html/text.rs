@@ -59,7 +59,7 @@ pub(super) fn number(value: f64) -> String {
     if !value.is_finite() {
         return "–".into();
     }
-    rich(&format!("{value:.3e}")).replace('-', "−")
+    rich(&format!("{:e}", significant(value, 4))).replace('-', "−")
 }
 
 /// An exact number as it is, another with four digits.
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn numbers_have_four_digits() {
         assert_eq!(number(0.123_456), "0.1235");
-        assert_eq!(number(-2.5e-7), "−2.500×10<sup>−7</sup>");
+        assert_eq!(number(-2.5e-7), "−2.5×10<sup>−7</sup>");
         assert_eq!(number(965_120.0), "965120");
     }
 }

@@ -27,6 +27,10 @@ pub(super) fn verdicts(page: &mut String, report: &Report, ladders: &[Ladder], d
         })
         .collect();
     page.push_str(HEAD);
+    if detail == Detail::Compact {
+        page.push_str(KEY);
+    }
+    page.push_str(COLUMNS);
     for section in sections(report) {
         let entries: Vec<&ClaimEntry> = report.claims.iter().filter(|entry| entry.id == section.id).collect();
         claim(page, &section, &entries, &fits, detail);
@@ -37,13 +41,17 @@ pub(super) fn verdicts(page: &mut String, report: &Report, ladders: &[Ladder], d
 const HEAD: &str = "<section aria-labelledby=\"verdicts\"><h2 id=\"verdicts\">Verdicts</h2>\
     <p>Each row opens to its cases, each case to its evidence. <i>Confirmed</i>: equal within the margin, and sharp. \
     <i>Bound</i>: true as an upper bound, not sharp. <i>Refuted</i>: it does not hold. <i>Conditional</i>: it holds for some \
-    cases and not for others. <i>Inconclusive</i>: the evidence does not decide. Intervals cover 95 %.</p>\
-    <div class=\"claims\"><div class=\"row head\" aria-hidden=\"true\"><span>verdict</span><span>claim</span>\
+    cases and not for others. <i>Inconclusive</i>: the evidence does not decide. Intervals cover 95 %.</p>";
+
+const KEY: &str = "<p>In the small figures: points kept by the fit, outlines left out, solid line fitted, dashed line the \
+    published slope, triangle the derived slope, dotted line the largest of the samples.</p>";
+
+const COLUMNS: &str = "<div class=\"claims\"><div class=\"row head\" aria-hidden=\"true\"><span>verdict</span><span>claim</span>\
     <span>published</span><span>derived</span><span>measured</span></div>";
 
 /// What a row says in the three columns; their names are shown where there is no head above them.
 fn columns(text: impl Fn(Which) -> String) -> String {
-    let one = |which: Which| format!("<span><i>{} </i>{}</span>", which.name(), text(which));
+    let one = |which: Which| format!("<span><i>{} </i><span>{}</span></span>", which.name(), text(which));
     Which::ALL.into_iter().map(one).collect()
 }
 

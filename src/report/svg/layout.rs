@@ -11,15 +11,15 @@ pub struct Size {
     pub width: f64,
     /// Of the area between the axes; figures with one scale choose their own.
     pub plot_height: f64,
-    /// Whether the legend is drawn.
-    pub legend: bool,
+    /// Whether it stands by itself: with a legend, a description, small ticks.
+    pub alone: bool,
 }
 
 impl Size {
     /// A figure by itself; as wide as a phone, and as a column of print.
-    pub const FULL: Self = Self { width: 360.0, plot_height: 220.0, legend: true };
+    pub const FULL: Self = Self { width: 360.0, plot_height: 220.0, alone: true };
     /// One of many whose lines are explained once for all.
-    pub const SMALL: Self = Self { width: 300.0, plot_height: 150.0, legend: false };
+    pub const SMALL: Self = Self { width: 300.0, plot_height: 150.0, alone: false };
 }
 
 /// A rectangle on the page.
@@ -84,11 +84,16 @@ impl Layout {
         let y_ticks = ticks(range.y[0], range.y[1], figure.y.log, most_y.clamp(2, 7));
         let left = widest(&y_ticks) + 12.0;
         let plot = Area { left, right, top, bottom: top + height };
-        let x_ticks = x_ticks(figure, &range, right - left);
+        let mut x_ticks = x_ticks(figure, &range, right - left);
+        let mut y_ticks = y_ticks;
+        if !size.alone {
+            x_ticks.retain(|tick| tick.label.is_some());
+            y_ticks.retain(|tick| tick.label.is_some());
+        }
         let x_title = wrapped(&axis_title(&figure.x.name, &figure.x.unit), right - left);
         let below = plot.bottom + 6.0 + LINE + LINE * x_title.len() as f64;
         let (legend, end) =
-            if size.legend { legend(&figure.layers, size, below) } else { (Vec::new(), below) };
+            if size.alone { legend(&figure.layers, size, below) } else { (Vec::new(), below) };
         Self {
             plot,
             range,

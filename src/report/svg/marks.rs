@@ -8,6 +8,9 @@ use std::fmt::Write as _;
 /// How many colours there are beside the neutral one.
 const COLOURS: usize = 7;
 
+/// More points than this are drawn smaller.
+const CROWD: usize = 150;
+
 /// The class of a colour.
 pub(super) fn class(colour: usize) -> String {
     if colour == 0 { "c0".into() } else { format!("c{}", (colour - 1) % COLOURS + 1) }
@@ -87,6 +90,7 @@ fn markers(places: &[[f64; 2]], colour: usize, hollow: bool) -> String {
     let shape = match (colour.max(1) - 1) % COLOURS {
         // A stroke of no length has the shape of its cap.
         0 => "h0",
+        1 if places.len() > CROWD => "m-1.3-1.3h2.6v2.6h-2.6z",
         1 => "m-2.6-2.6h5.2v5.2h-5.2z",
         2 => "m0-3.4l3.3 5.8h-6.6z",
         3 => "m0-3.5l3.5 3.5-3.5 3.5-3.5-3.5z",
@@ -99,6 +103,7 @@ fn markers(places: &[[f64; 2]], colour: usize, hollow: bool) -> String {
         let _ = write!(path, "M{} {}{shape}", number(*x), number(*y));
     }
     let kind = match (shape, hollow) {
+        ("h0", false) if places.len() > CROWD => "p n",
         ("h0", false) => "p",
         ("h0", true) => {
             return format!("<path class=\"p {class}\" d=\"{path}\"/><path class=\"o\" d=\"{path}\"/>");

@@ -21,28 +21,42 @@ pub const STYLE: &str = include_str!("figure.css");
 
 /// The figure as an `<svg>` element for a page.
 pub fn inline(figure: &Figure, size: Size) -> String {
-    drawing(figure, size, "class=\"figure\"", "")
+    drawing(figure, size, None)
 }
 
-/// The figure as a file, with its own style, readable on light and on dark ground.
+/// The figure as a file with its own style, dark on light whoever looks at it, and in plain colours, as converters to PDF
+/// know no variables.
 pub fn standalone(figure: &Figure) -> String {
-    let style = format!("<style>{STYLE}</style>");
-    let attributes = "xmlns=\"http://www.w3.org/2000/svg\" class=\"figure\"";
-    let svg = drawing(figure, Size::FULL, attributes, &style);
+    let mut rules = STYLE.lines();
+    let light = rules.next().and_then(|rule| rule.strip_prefix(".figure{")).unwrap_or_default();
+    let mut style: String = rules.filter(|rule| !rule.starts_with("@media")).collect();
+    for declaration in light.trim_end_matches('}').split(';') {
+        if let Some((name, value)) = declaration.split_once(':') {
+            style = style.replace(&format!("var({name})"), value);
+        }
+    }
+    let svg = drawing(figure, Size::FULL, Some(&style));
     format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{svg}\n")
 }
 
-fn drawing(figure: &Figure, size: Size, attributes: &str, style: &str) -> String {
+fn drawing(figure: &Figure, size: Size, own_style: Option<&str>) -> String {
     let layout = Layout::of(figure, size);
     let [width, height] = layout.size.map(number);
-    let mut svg = format!(
-        "<svg {attributes} role=\"img\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">"
-    );
-    let _ = write!(svg, "<title>{}</title>", escaped(&title(figure)));
-    if size.legend {
+    let mut svg = format!("<svg class=\"figure\" role=\"img\" viewBox=\"0 0 {width} {height}\"");
+    if own_style.is_some() {
+        // A page sets the size of its drawings, a file has its own.
+        let _ = write!(svg, " xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\"");
+    }
+    let title = title(figure);
+    // Beside its fit, what is drawn of which case has been said.
+    let short = title.split(": ").next().filter(|_| !size.alone).unwrap_or(&title);
+    let _ = write!(svg, "><title>{}</title>", escaped(short));
+    if size.alone {
         let _ = write!(svg, "<desc>{}</desc>", escaped(&description(figure)));
     }
-    svg += style;
+    if let Some(style) = own_style {
+        let _ = write!(svg, "<style>{style}</style>");
+    }
     axes(&mut svg, &layout);
     for layer in &figure.layers {
         svg += &marks::layer(layer, &layout);
