@@ -1,5 +1,6 @@
 //! The arguments of each command.
 
+use super::pages::ReportArguments;
 use crate::study::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -112,22 +113,6 @@ impl MergeArguments {
             from: self.from.clone(),
         }
     }
-}
-
-#[derive(Debug, Args)]
-pub(super) struct ReportArguments {
-    /// Folders with a report.json, or folders of such folders
-    #[arg(required = true, value_name = "REPORT")]
-    pub(super) reports: Vec<PathBuf>,
-    /// Write a page for each, report.html
-    #[arg(long, required_unless_present = "figures")]
-    pub(super) html: bool,
-    /// Write every figure as an SVG file to a folder of the report's name under this one
-    #[arg(long, value_name = "DIR")]
-    pub(super) figures: Option<PathBuf>,
-    /// Folder of the pages and their index [default: each page beside its report]
-    #[arg(long, value_name = "DIR", requires = "html")]
-    pub(super) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
