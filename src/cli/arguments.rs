@@ -1,5 +1,6 @@
 //! The arguments of each command.
 
+use super::pages::ReportArguments;
 use crate::study::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -21,6 +22,8 @@ pub(super) enum Command {
     Run(RunArguments),
     /// Make the report of a scene whose shards have been run
     Merge(MergeArguments),
+    /// Make pages to look at from reports
+    Report(ReportArguments),
     /// Say what a scene would compute, and what it leaves out
     Plan(PlanArguments),
     /// Certified moment sums over a lattice, to any number of digits or in closed form
@@ -65,6 +68,9 @@ pub(super) struct RunArguments {
     /// Print the report as JSON instead of a table
     #[arg(long)]
     pub(super) json: bool,
+    /// Write a page to look at as well, report.html, and the index of reports/
+    #[arg(long)]
+    pub(super) html: bool,
     /// Further folders of finished blocks to read from
     #[arg(skip)]
     pub(super) from: Vec<PathBuf>,
@@ -88,6 +94,9 @@ pub(super) struct MergeArguments {
     /// Print the report as JSON instead of a table
     #[arg(long)]
     pub(super) json: bool,
+    /// Write a page to look at as well, report.html, and the index of reports/
+    #[arg(long)]
+    pub(super) html: bool,
 }
 
 impl MergeArguments {
@@ -100,6 +109,7 @@ impl MergeArguments {
             shard: None,
             threads: None,
             json: self.json,
+            html: self.html,
             from: self.from.clone(),
         }
     }

@@ -2,6 +2,7 @@
 
 use super::arguments::{PlanArguments, RunArguments};
 use super::exit::{Exit, Failure};
+use super::pages;
 use super::progress::Progress;
 use super::terminal;
 use crate::report::{assemble, check_target, to_json, write_report};
@@ -68,6 +69,9 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
         timings["timed"] = timed;
     }
     write_report(&out, &report, &timings)?;
+    if arguments.html {
+        pages::beside(&out, arguments.out.is_none())?;
+    }
     if arguments.json {
         print_out(&to_json(&report));
     } else {

@@ -1,6 +1,7 @@
 //! Exit codes that scripts can use, and what led to them.
 
 use crate::language::LanguageError;
+use crate::report::html::ReadError;
 use crate::report::{Report, Verdict, WriteError};
 use crate::study::{SceneError, StudyError};
 use thiserror::Error;
@@ -56,6 +57,8 @@ pub(super) enum Failure {
     Study(#[from] StudyError),
     #[error(transparent)]
     Write(#[from] WriteError),
+    #[error(transparent)]
+    Read(#[from] ReadError),
     #[error("{1}")]
     Operator(String, LanguageError),
     #[error("{0}")]

@@ -9,6 +9,7 @@ mod exit;
 mod expand;
 mod kernel;
 mod orders;
+mod pages;
 mod progress;
 mod rms;
 mod sums;
@@ -35,6 +36,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     let done = match &arguments.command {
         Command::Run(run) => execute::run(run, false),
         Command::Merge(merge) => execute::run(&merge.as_run(), true),
+        Command::Report(arguments) => pages::report(arguments),
         Command::Plan(plan) => execute::plan(plan),
         Command::Sums(arguments) => sums::sums(arguments),
         Command::Schema(schema) => catalogue::schema(schema),

@@ -3,11 +3,15 @@
 mod advise;
 mod assemble;
 mod expansion;
+pub mod figure;
+pub mod html;
 mod layout;
 mod markdown;
 mod orders;
 mod printed;
+mod rich;
 mod rms;
+pub mod svg;
 mod symbol;
 mod table;
 mod write;
