@@ -17,10 +17,16 @@ const EXIT_CODES: &str = "Exit codes: 0 all verdicts as the scene expects, 1 som
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
+    /// Write a commented scene to start from
+    New(NewArguments),
     /// Run a scene and write its report
     Run(RunArguments),
     /// Make the report of a scene whose shards have been run
     Merge(MergeArguments),
+    /// Show reports again, or write them in other forms
+    Report(ReportArguments),
+    /// Say what changed from one report to another, in standard errors; exit code 1 if anything did
+    Diff(DiffArguments),
     /// Say what a scene would compute, and what it leaves out
     Plan(PlanArguments),
     /// Certified moment sums over a lattice, to any number of digits or in closed form
@@ -41,6 +47,65 @@ pub(super) enum Command {
     Advise(AdviseArguments),
     /// List what can be named in a scene
     List(ListArguments),
+    /// Tell a claim's story: what is printed where, what is checked, what the reports found
+    Explain(ExplainArguments),
+    /// Print completions for a shell
+    Completions(CompletionArguments),
+    /// Print the manual page, or write those of all commands
+    Man(ManArguments),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct NewArguments {
+    /// Name of the analysis: analyses/NAME/scene.toml is written
+    #[arg(default_value = "mine")]
+    pub(super) name: String,
+    /// What it studies; the set-ups of the papers are in analyses/ of the repository
+    #[arg(long, value_enum, default_value = "moment-orders")]
+    pub(super) kind: SceneKind,
+}
+
+/// What a new scene studies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum SceneKind {
+    /// Orders of moment sums
+    MomentOrders,
+    /// Orders of the coefficients of operators' expansions
+    OperatorOrders,
+    /// Heat conduction in time
+    Heat,
+    /// Spectra of assembled Laplacians
+    Stiff,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExplainArguments {
+    /// A claim's id, or what several share before the `/`
+    #[arg(value_name = "CLAIM")]
+    pub(super) claim: String,
+    /// Folder of reports, whose evidence is told
+    #[arg(long, value_name = "DIR", default_value = "reports")]
+    pub(super) reports: PathBuf,
+    /// Every case of every report, not the first few
+    #[arg(long)]
+    pub(super) all: bool,
+    /// Print JSON, with every case
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompletionArguments {
+    /// Which shell
+    #[arg(value_enum)]
+    pub(super) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ManArguments {
+    /// Write remainder.1 and a page for each command to this folder
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Args)]
@@ -65,9 +130,47 @@ pub(super) struct RunArguments {
     /// Print the report as JSON instead of a table
     #[arg(long)]
     pub(super) json: bool,
+    #[command(flatten)]
+    pub(super) views: ViewArguments,
     /// Further folders of finished blocks to read from
     #[arg(skip)]
     pub(super) from: Vec<PathBuf>,
+}
+
+/// Other forms of a report.
+#[derive(Debug, Clone, Default, Args)]
+pub(super) struct ViewArguments {
+    /// Write every table, fit and series as comma-separated values to DIR/NAME
+    #[arg(long, value_name = "DIR")]
+    pub(super) csv: Option<PathBuf>,
+    /// Write the verdicts as JUnit XML, for continuous integration
+    #[arg(long, value_name = "FILE")]
+    pub(super) junit: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ReportArguments {
+    /// Reports: folders that hold report.json, or such files
+    #[arg(required = true, value_name = "PATH")]
+    pub(super) paths: Vec<PathBuf>,
+    /// Print the record as JSON, several as a list
+    #[arg(long)]
+    pub(super) json: bool,
+    #[command(flatten)]
+    pub(super) views: ViewArguments,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct DiffArguments {
+    /// The first report: a folder that holds report.json, or such a file
+    #[arg(value_name = "A")]
+    pub(super) before: PathBuf,
+    /// The second report
+    #[arg(value_name = "B")]
+    pub(super) after: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -88,6 +191,8 @@ pub(super) struct MergeArguments {
     /// Print the report as JSON instead of a table
     #[arg(long)]
     pub(super) json: bool,
+    #[command(flatten)]
+    pub(super) views: ViewArguments,
 }
 
 impl MergeArguments {
@@ -100,6 +205,7 @@ impl MergeArguments {
             shard: None,
             threads: None,
             json: self.json,
+            views: self.views.clone(),
             from: self.from.clone(),
         }
     }

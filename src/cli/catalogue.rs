@@ -3,6 +3,7 @@
 use super::arguments::{ListArguments, Listed, SchemaArguments, SchemaOf};
 use super::execute::print_out;
 use super::exit::{Exit, Failure};
+use super::terminal::fitted;
 use crate::claim;
 use crate::kernel;
 use crate::language::operators;
@@ -65,7 +66,7 @@ pub(super) fn list(arguments: &ListArguments) -> Result<Exit, Failure> {
             let source = if source.is_empty() { String::new() } else { format!("  [{source}]") };
             text += &format!("  {id:width$}  {what}{source}\n");
         }
-        print_out(&text);
+        print_out(&fitted(&text));
     }
     Ok(Exit::AsExpected)
 }

@@ -3,7 +3,7 @@
 use super::arguments::{PlanArguments, RunArguments};
 use super::exit::{Exit, Failure};
 use super::progress::Progress;
-use super::terminal;
+use super::{terminal, views};
 use crate::report::{assemble, check_target, to_json, write_report};
 use crate::study::{
     Analysis, BlockStore, Omission, Plan, RunOptions, SurveyScene, run as run_study, run_survey,
@@ -65,6 +65,7 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
         "task_seconds": seconds,
     });
     write_report(&out, &report, &timings)?;
+    views::write(&arguments.views, std::slice::from_ref(&report))?;
     if arguments.json {
         print_out(&to_json(&report));
     } else {
@@ -103,7 +104,7 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<Exit, Failure> {
         text += &format!("  {}: {:.1e} pairs\n", task.label(), task.cost(&scene) as f64);
     }
     text += &left_out(&plan.omissions);
-    print_out(&text);
+    print_out(&terminal::fitted(&text));
     Ok(Exit::AsExpected)
 }
 
@@ -133,7 +134,7 @@ fn plan_survey(scene: &SurveyScene, as_json: bool) -> Exit {
         text += &format!("  {}: {:.1e} pairs\n", task.label, task.cost as f64);
     }
     text += &left_out(&omissions);
-    print_out(&text);
+    print_out(&terminal::fitted(&text));
     Exit::AsExpected
 }
 

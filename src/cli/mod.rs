@@ -4,16 +4,23 @@ mod advise;
 mod arguments;
 mod catalogue;
 mod diagnostic;
+mod diff;
 mod execute;
 mod exit;
 mod expand;
+mod explain;
+mod files;
 mod kernel;
+mod new;
 mod orders;
 mod progress;
+mod report;
 mod rms;
+mod shell;
 mod sums;
 mod symbol;
 mod terminal;
+mod views;
 
 pub use arguments::Arguments;
 pub use exit::Exit;
@@ -33,8 +40,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         }
     };
     let done = match &arguments.command {
+        Command::New(new) => new::new(new),
         Command::Run(run) => execute::run(run, false),
         Command::Merge(merge) => execute::run(&merge.as_run(), true),
+        Command::Report(arguments) => report::report(arguments),
+        Command::Diff(arguments) => diff::diff(arguments),
         Command::Plan(plan) => execute::plan(plan),
         Command::Sums(arguments) => sums::sums(arguments),
         Command::Schema(schema) => catalogue::schema(schema),
@@ -45,6 +55,9 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Orders(arguments) => orders::orders(arguments),
         Command::Advise(arguments) => advise::advise(arguments),
         Command::List(list) => catalogue::list(list),
+        Command::Explain(claim) => explain::explain(claim),
+        Command::Completions(arguments) => shell::completions(arguments),
+        Command::Man(arguments) => shell::man(arguments),
     };
     match done {
         Ok(exit) => exit,
