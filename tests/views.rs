@@ -13,6 +13,8 @@ mod explain;
 mod folder;
 #[path = "views/junit.rs"]
 mod junit;
+#[path = "views/latex.rs"]
+mod latex;
 #[path = "views/new.rs"]
 mod new;
 #[path = "views/schema.rs"]

@@ -1,5 +1,9 @@
 //! The arguments of each command.
 
+pub(super) use super::report_arguments::{
+    CompletionArguments, DiffArguments, ExplainArguments, ManArguments, NewArguments, ReportArguments,
+    SceneKind, ViewArguments,
+};
 use crate::study::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -55,59 +59,6 @@ pub(super) enum Command {
     Man(ManArguments),
 }
 
-#[derive(Debug, Args)]
-pub(super) struct NewArguments {
-    /// Name of the analysis: analyses/NAME/scene.toml is written
-    #[arg(default_value = "mine")]
-    pub(super) name: String,
-    /// What it studies; the set-ups of the papers are in analyses/ of the repository
-    #[arg(long, value_enum, default_value = "moment-orders")]
-    pub(super) kind: SceneKind,
-}
-
-/// What a new scene studies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum SceneKind {
-    /// Orders of moment sums
-    MomentOrders,
-    /// Orders of the coefficients of operators' expansions
-    OperatorOrders,
-    /// Heat conduction in time
-    Heat,
-    /// Spectra of assembled Laplacians
-    Stiff,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct ExplainArguments {
-    /// A claim's id, or what several share before the `/`
-    #[arg(value_name = "CLAIM")]
-    pub(super) claim: String,
-    /// Folder of reports, whose evidence is told
-    #[arg(long, value_name = "DIR", default_value = "reports")]
-    pub(super) reports: PathBuf,
-    /// Every case of every report, not the first few
-    #[arg(long)]
-    pub(super) all: bool,
-    /// Print JSON, with every case
-    #[arg(long)]
-    pub(super) json: bool,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct CompletionArguments {
-    /// Which shell
-    #[arg(value_enum)]
-    pub(super) shell: clap_complete::Shell,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct ManArguments {
-    /// Write remainder.1 and a page for each command to this folder
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
-}
-
 #[derive(Debug, Clone, Args)]
 pub(super) struct RunArguments {
     /// A scene file, or a folder with scene.toml or scene.json
@@ -132,45 +83,12 @@ pub(super) struct RunArguments {
     pub(super) json: bool,
     #[command(flatten)]
     pub(super) views: ViewArguments,
+    /// Write a page to look at as well, report.html, and the index of reports/
+    #[arg(long)]
+    pub(super) html: bool,
     /// Further folders of finished blocks to read from
     #[arg(skip)]
     pub(super) from: Vec<PathBuf>,
-}
-
-/// Other forms of a report.
-#[derive(Debug, Clone, Default, Args)]
-pub(super) struct ViewArguments {
-    /// Write every table, fit and series as comma-separated values to DIR/NAME
-    #[arg(long, value_name = "DIR")]
-    pub(super) csv: Option<PathBuf>,
-    /// Write the verdicts as JUnit XML, for continuous integration
-    #[arg(long, value_name = "FILE")]
-    pub(super) junit: Option<PathBuf>,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct ReportArguments {
-    /// Reports: folders that hold report.json, or such files
-    #[arg(required = true, value_name = "PATH")]
-    pub(super) paths: Vec<PathBuf>,
-    /// Print the record as JSON, several as a list
-    #[arg(long)]
-    pub(super) json: bool,
-    #[command(flatten)]
-    pub(super) views: ViewArguments,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct DiffArguments {
-    /// The first report: a folder that holds report.json, or such a file
-    #[arg(value_name = "A")]
-    pub(super) before: PathBuf,
-    /// The second report
-    #[arg(value_name = "B")]
-    pub(super) after: PathBuf,
-    /// Print JSON
-    #[arg(long)]
-    pub(super) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -193,6 +111,9 @@ pub(super) struct MergeArguments {
     pub(super) json: bool,
     #[command(flatten)]
     pub(super) views: ViewArguments,
+    /// Write a page to look at as well, report.html, and the index of reports/
+    #[arg(long)]
+    pub(super) html: bool,
 }
 
 impl MergeArguments {
@@ -206,6 +127,7 @@ impl MergeArguments {
             threads: None,
             json: self.json,
             views: self.views.clone(),
+            html: self.html,
             from: self.from.clone(),
         }
     }

@@ -3,7 +3,7 @@
 use super::arguments::{PlanArguments, RunArguments};
 use super::exit::{Exit, Failure};
 use super::progress::Progress;
-use super::{terminal, views};
+use super::{pages, terminal, views};
 use crate::report::{assemble, check_target, to_json, write_report};
 use crate::study::{
     Analysis, BlockStore, Omission, Plan, RunOptions, SurveyScene, run as run_study, run_survey,
@@ -66,6 +66,9 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
     });
     write_report(&out, &report, &timings)?;
     views::write(&arguments.views, std::slice::from_ref(&report))?;
+    if arguments.html {
+        pages::beside(&out, arguments.out.is_none())?;
+    }
     if arguments.json {
         print_out(&to_json(&report));
     } else {

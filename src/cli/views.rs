@@ -3,7 +3,7 @@
 use super::arguments::ViewArguments;
 use super::exit::Failure;
 use super::files::write_file;
-use crate::report::{Report, csv_files, file_names, junit};
+use crate::report::{Report, csv_files, file_names, junit, latex_files, latex_shared};
 use std::path::Path;
 
 /// Writes what is asked for: of several reports, each into a folder of its own name.
@@ -25,6 +25,18 @@ pub(super) fn write(views: &ViewArguments, reports: &[Report]) -> Result<(), Fai
         write_file(file, &junit(reports).map_err(|error| fault(&error))?)?;
         said(file);
     }
+    if let Some(folder) = &views.latex {
+        let named: Vec<(&str, &Report)> = names.iter().map(String::as_str).zip(reports).collect();
+        for (name, report) in &named {
+            for (file, text) in latex_files(report).map_err(|error| fault(&error))? {
+                write_file(&folder.join(name).join(file), &text)?;
+            }
+        }
+        for (file, text) in latex_shared(&named).map_err(|error| fault(&error))? {
+            write_file(&folder.join(file), &text)?;
+        }
+        said(folder);
+    }
     Ok(())
 }
 
@@ -36,7 +48,7 @@ fn said(path: &Path) {
 impl ViewArguments {
     /// Whether any is asked for.
     pub(super) fn any(&self) -> bool {
-        let Self { csv, junit } = self;
-        csv.is_some() || junit.is_some()
+        let Self { csv, junit, latex } = self;
+        csv.is_some() || junit.is_some() || latex.is_some()
     }
 }

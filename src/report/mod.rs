@@ -6,14 +6,19 @@ mod csv;
 mod diff;
 mod expansion;
 mod explain;
+pub mod figure;
+pub mod html;
 mod junit;
+mod latex;
 mod layout;
 mod markdown;
 mod numbers;
 mod orders;
 mod printed;
 mod read;
+mod rich;
 mod rms;
+pub mod svg;
 mod symbol;
 mod table;
 mod write;
@@ -28,6 +33,7 @@ pub use expansion::{
 };
 pub use explain::{Evidence, Story, UnknownClaim, stories};
 pub use junit::junit;
+pub use latex::{LatexError, latex_files, latex_shared};
 pub use layout::to_json;
 pub use markdown::markdown;
 pub use orders::{

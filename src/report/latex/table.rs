@@ -88,11 +88,12 @@ impl Table {
                     );
                 }
                 Row::Cells(cells) => {
-                    let cells = cells.iter().enumerate().map(|(index, cell)| match (cell, self.format(index)) {
-                        (Cell::Number(number), _) => number.clone(),
-                        (Cell::Text(text), Some(_)) => format!("{{{text}}}"),
-                        (Cell::Text(text), None) => text.clone(),
-                    });
+                    let cells =
+                        cells.iter().enumerate().map(|(index, cell)| match (cell, self.format(index)) {
+                            (Cell::Number(number), _) => number.clone(),
+                            (Cell::Text(text), Some(_)) => format!("{{{text}}}"),
+                            (Cell::Text(text), None) => text.clone(),
+                        });
                     let _ = writeln!(text, "{} \\\\", cells.collect::<Vec<_>>().join(" & "));
                 }
             }
