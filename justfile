@@ -36,6 +36,10 @@ bench-peers PEER *OPTIONS:
 reports *NAMES:
     bash .ci/reports write {{ NAMES }}
 
+# The committed pages from the committed reports.
+pages:
+    cargo run --release -- report reports --html
+
 # Everything that CI does.
 ci:
     bash .ci/run

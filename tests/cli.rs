@@ -23,6 +23,8 @@ mod folder;
 mod interruptions;
 #[path = "cli/orders.rs"]
 mod orders;
+#[path = "cli/pages.rs"]
+mod pages;
 #[path = "cli/plans.rs"]
 mod plans;
 #[path = "cli/reports.rs"]

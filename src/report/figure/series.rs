@@ -11,7 +11,15 @@ const MOST_GROUPS: usize = 7;
 const DENSE: usize = 30;
 
 pub(super) fn figures(report: &Report) -> Vec<Figure> {
-    report.series.iter().filter(|series| !is_spectrum(series)).flat_map(panels).collect()
+    // A caption names its series where the number and the axes alone do not tell which it is.
+    let same = |a: &Series, b: &Series| a.figure == b.figure && a.x.name == b.x.name && a.y.name == b.y.name;
+    let drawn = report.series.iter().filter(|series| !is_spectrum(series));
+    drawn
+        .flat_map(|series| {
+            let twins = report.series.iter().filter(|other| same(series, other)).count();
+            panels(series, series.figure.is_none() || twins > 1)
+        })
+        .collect()
 }
 
 /// What a line's name says, part by part, and whether it is the derived one of its group.
@@ -53,13 +61,14 @@ fn panel_part(lines: &[Line]) -> Option<usize> {
     (0..longest).filter(fits).filter(|part| count(part) > 1).min_by_key(count)
 }
 
-fn panels(series: &Series) -> Vec<Figure> {
+fn panels(series: &Series, named: bool) -> Vec<Figure> {
+    let spans_decades = spans_decades(&series.lines);
     let number = series.figure.as_ref().map(|figure| figure.trim_start_matches("Fig. ").to_owned());
     let subject = format!("{} against {}", series.y.name, series.x.name);
     let panel = |id: String, title: &str, lines: &[&Line], part: Option<usize>| {
         let mut figure = Figure::new(id, "", series.x.clone(), series.y.clone());
         figure.number.clone_from(&number);
-        if spans_decades(lines) && !figure.y.log {
+        if spans_decades && !figure.y.log {
             figure.y.log = true;
             figure.notes.push("The ordinate spans decades and is drawn logarithmically.".into());
         }
@@ -72,7 +81,9 @@ fn panels(series: &Series) -> Vec<Figure> {
         };
         let skipped: Vec<usize> = part.into_iter().chain(common.iter().map(|(part, _)| *part)).collect();
         fill(&mut figure, lines, &skipped);
-        figure.notes.push(format!("Series {} of the report.", series.id));
+        if named {
+            figure.notes.push(format!("Series {} of the report.", series.id));
+        }
         figure
     };
     let Some(part) = panel_part(&series.lines) else {
@@ -88,12 +99,12 @@ fn panels(series: &Series) -> Vec<Figure> {
 }
 
 /// Whether a straight axis would press most of the values onto zero.
-fn spans_decades(lines: &[&Line]) -> bool {
+fn spans_decades(lines: &[Line]) -> bool {
     let mut values: Vec<f64> =
         lines.iter().flat_map(|line| &line.points).filter_map(|point| point.get(1)).copied().collect();
     values.sort_by(f64::total_cmp);
     match (values.first(), values.get(values.len() / 2), values.last()) {
-        (Some(least), Some(middle), Some(most)) => *least > 0.0 && *most > 100.0 * middle,
+        (Some(least), Some(middle), Some(most)) => *least >= 0.0 && *most > 100.0 * middle,
         _ => false,
     }
 }

@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 const COLOURS: usize = 7;
 
 /// More points than this are drawn smaller.
-const CROWD: usize = 150;
+const CROWD: usize = 60;
 
 /// The class of a colour.
 pub(super) fn class(colour: usize) -> String {
