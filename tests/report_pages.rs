@@ -83,7 +83,8 @@ fn every_committed_report_has_a_whole_and_small_page_of_its_own() {
         for word in ["NaN", "inf<", "infinity", ">null<"] {
             assert!(!text.contains(word), "{name}: {word} is shown");
         }
-        let claims: BTreeSet<&str> = elements(&document, "details").filter_map(|d| d.attribute("id")).collect();
+        let claims: BTreeSet<&str> =
+            elements(&document, "details").filter_map(|d| d.attribute("id")).collect();
         let known: BTreeSet<&str> = report.verdicts.iter().map(|rolled| rolled.id.as_str()).collect();
         assert_eq!(claims, known, "{name}: claims of the page and of the report");
         let cases = elements(&document, "details").filter(|d| d.attribute("class") == Some("case")).count();
@@ -91,7 +92,8 @@ fn every_committed_report_has_a_whole_and_small_page_of_its_own() {
         for series in report.series.iter().filter(|series| series.figure.is_some()) {
             let number = series.figure.as_deref().unwrap().trim_start_matches("Fig. ");
             let caption = format!("Fig. {} of the paper", number.replace('∞', "∞"));
-            let shown = elements(&document, "title").any(|title| title.text().unwrap_or("").starts_with(&caption));
+            let shown =
+                elements(&document, "title").any(|title| title.text().unwrap_or("").starts_with(&caption));
             assert!(shown, "{name}: no figure '{caption}'");
         }
         let committed = fs::read_to_string(folder.join("report.html"))
@@ -176,7 +178,8 @@ fn a_ladder_shows_what_its_claim_and_its_fit_say() {
 
 #[test]
 fn text_of_a_report_is_never_markup() {
-    let (_, mut report) = committed().into_iter().find(|(folder, _)| folder.ends_with("fatehi-heat")).unwrap();
+    let (_, mut report) =
+        committed().into_iter().find(|(folder, _)| folder.ends_with("fatehi-heat")).unwrap();
     let hostile = "<script>alert(1)</script> & \"quoted\" ]]> \u{1} 'x'";
     report.provenance.title = hostile.into();
     report.provenance.scene = hostile.into();
@@ -196,7 +199,11 @@ fn text_of_a_report_is_never_markup() {
             row.insert(hostile.into(), hostile.into());
         });
     }
-    report.left_out.push(remainder::record::LeftOut { what: hostile.into(), why: hostile.into(), saved: None });
+    report.left_out.push(remainder::record::LeftOut {
+        what: hostile.into(),
+        why: hostile.into(),
+        saved: None,
+    });
     let text = page(&report, LINKS);
     assert_self_contained(&parsed(&text));
 }
@@ -205,7 +212,10 @@ fn text_of_a_report_is_never_markup() {
 fn a_report_of_nothing_has_a_page() {
     let text = page(&Report::default(), Links::default());
     assert_self_contained(&parsed(&text));
-    assert_eq!(elements(&parsed(&text), "a").filter(|a| a.attribute("href") == Some("report.json")).count(), 0);
+    assert_eq!(
+        elements(&parsed(&text), "a").filter(|a| a.attribute("href") == Some("report.json")).count(),
+        0
+    );
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! The arguments of each command.
 
 pub(super) use super::report_arguments::{
-    CompletionArguments, DiffArguments, ExplainArguments, ManArguments, NewArguments, ReportArguments,
-    SceneKind, ViewArguments,
+    CompletionArguments, DiffArguments, ExplainArguments, ManArguments, NewArguments, ReferenceArguments,
+    ReportArguments, SceneKind, ViewArguments,
 };
 use crate::study::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -53,6 +53,8 @@ pub(super) enum Command {
     List(ListArguments),
     /// Tell a claim's story: what is printed where, what is checked, what the reports found
     Explain(ExplainArguments),
+    /// Write the reference of all names, of scenes and of reports as Markdown
+    Reference(ReferenceArguments),
     /// Print completions for a shell
     Completions(CompletionArguments),
     /// Print the manual page, or write those of all commands

@@ -15,6 +15,7 @@ mod new;
 mod orders;
 mod pages;
 mod progress;
+mod reference;
 mod report;
 mod report_arguments;
 mod rms;
@@ -58,6 +59,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Advise(arguments) => advise::advise(arguments),
         Command::List(list) => catalogue::list(list),
         Command::Explain(claim) => explain::explain(claim),
+        Command::Reference(arguments) => reference::reference(arguments),
         Command::Completions(arguments) => shell::completions(arguments),
         Command::Man(arguments) => shell::man(arguments),
     };

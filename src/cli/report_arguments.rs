@@ -103,3 +103,10 @@ pub(super) struct DiffArguments {
     #[arg(long)]
     pub(super) json: bool,
 }
+
+#[derive(Debug, Args)]
+pub(super) struct ReferenceArguments {
+    /// Folder of the pages
+    #[arg(value_name = "DIR")]
+    pub(super) out: PathBuf,
+}

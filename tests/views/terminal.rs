@@ -50,7 +50,7 @@ fn tables_and_texts_fit_the_width() {
     }
 }
 
-const COMMANDS: [&str; 19] = [
+const COMMANDS: [&str; 20] = [
     "new",
     "run",
     "merge",
@@ -67,6 +67,7 @@ const COMMANDS: [&str; 19] = [
     "advise",
     "list",
     "explain",
+    "reference",
     "completions",
     "man",
     "help",

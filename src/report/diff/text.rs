@@ -89,7 +89,8 @@ fn word(value: &Value) -> String {
     match value {
         Value::Null => "–".into(),
         Value::String(text) => text.clone(),
-        Value::Number(number) => number.to_string(),
+        // All digits, in which it may differ; but 7, not 7.0.
+        Value::Number(number) => number.to_string().trim_end_matches(".0").to_owned(),
         Value::Object(map) => {
             let number = |key: &str| match map.get(key) {
                 Some(Value::Number(number)) => number.as_f64().map_or_else(String::new, short),
