@@ -82,7 +82,7 @@ fn layer_source(source: &mut String, data: &mut Data, layer: &Layer, stem: &str)
             let marker = MARKERS[index];
             let _ = writeln!(
                 source,
-                "\\addplot[{colour}, only marks, mark={marker}{style}{forget}{bars}] table[{columns}] {{{stem}.dat}};"
+                "\\addplot[{colour}, only marks, mark={marker}{style}{forget}{bars}] table[{columns}] {{\\remainderfolder/{stem}.dat}};"
             );
         }
         Mark::Line { points, dash } => {
@@ -94,14 +94,14 @@ fn layer_source(source: &mut String, data: &mut Data, layer: &Layer, stem: &str)
             };
             let _ = writeln!(
                 source,
-                "\\addplot[{colour}, thick, no marks, {dash}{forget}] table[{columns}] {{{stem}.dat}};"
+                "\\addplot[{colour}, thick, no marks, {dash}{forget}] table[{columns}] {{\\remainderfolder/{stem}.dat}};"
             );
         }
         Mark::Area { outline } => {
             let columns = data.add(outline.iter().map(|point| [point[0], point[1], 0.0]), false);
             let _ = writeln!(
                 source,
-                "\\addplot[{colour}, fill={colour}, fill opacity=0.1, no marks{forget}] table[{columns}] {{{stem}.dat}} -- cycle;"
+                "\\addplot[{colour}, fill={colour}, fill opacity=0.1, no marks{forget}] table[{columns}] {{\\remainderfolder/{stem}.dat}} -- cycle;"
             );
         }
         Mark::Slope { start: [x, y], to_x, exponent, label } => {

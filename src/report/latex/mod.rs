@@ -84,8 +84,6 @@ pub fn latex_shared(reports: &[(&str, &Report)]) -> Result<BTreeMap<String, Stri
          %   pdflatex all && bibtex all && pdflatex all && pdflatex all\n\
          \\documentclass{article}\n\\usepackage[margin=2cm]{geometry}\n\\usepackage{remainder}\n",
     );
-    let folders: Vec<String> = reports.iter().map(|(name, _)| format!("{name}/figures")).collect();
-    let _ = writeln!(all, "\\remainderdata{{{}}}", folders.join(","));
     all.push_str("\\begin{document}\n");
     for (name, report) in reports {
         let title = match report.provenance.title.as_str() {
@@ -110,7 +108,7 @@ pub fn latex_shared(reports: &[(&str, &Report)]) -> Result<BTreeMap<String, Stri
                 figure.number.as_ref().map(|number| format!("Figure {number}. ")).unwrap_or_default();
             let stem = figure.file_stem();
             let caption = tex(&format!("{number}{}", figure.title));
-            let _ = writeln!(all, "\\remainderfigure{{{name}/figures/{stem}}}{{{caption}}}");
+            let _ = writeln!(all, "\\remainderfigure{{{name}/figures}}{{{stem}}}{{{caption}}}");
         }
     }
     all.push_str("\\bibliographystyle{plain}\n\\bibliography{references}\n\\end{document}\n");
