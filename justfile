@@ -47,3 +47,7 @@ ci:
 # Format the code.
 fmt:
     cargo fmt
+
+# Make the reference chapters of the book anew.
+reference:
+    cargo run --release -- reference docs/reference

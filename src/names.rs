@@ -8,10 +8,25 @@
 /// assert_eq!(remainder::names::nearest("xyz", &["cubic-spline"]), None);
 /// ```
 pub fn nearest(given: &str, known: &[&str]) -> Option<String> {
-    known
-        .iter()
-        .map(|name| (strsim::jaro_winkler(&given.to_lowercase(), &name.to_lowercase()), *name))
-        .filter(|(likeness, _)| *likeness > 0.75)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, name)| name.to_owned())
+    alike(given, known).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, name)| name.to_owned())
+}
+
+/// The known names most like `given`, the nearest first, `most` at most.
+///
+/// # Examples
+/// ```
+/// let known = ["cubic-spline", "quintic-spline", "wendland-c2"];
+/// assert_eq!(remainder::names::nearest_few("quintic-splin", &known, 2), ["quintic-spline", "cubic-spline"]);
+/// ```
+pub fn nearest_few(given: &str, known: &[&str], most: usize) -> Vec<String> {
+    let mut found: Vec<(f64, &str)> = alike(given, known).collect();
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    found.into_iter().take(most).map(|(_, name)| name.to_owned()).collect()
+}
+
+/// Names close enough to be what was meant, and how close.
+fn alike<'a>(given: &str, known: &[&'a str]) -> impl Iterator<Item = (f64, &'a str)> {
+    let given = given.to_lowercase();
+    let likeness = move |name: &str| strsim::jaro_winkler(&given, &name.to_lowercase());
+    known.iter().map(move |name| (likeness(name), *name)).filter(|(likeness, _)| *likeness > 0.75)
 }

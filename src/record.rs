@@ -55,13 +55,13 @@ pub struct Report {
 pub struct ViscosityConstant {
     /// `C`, `D`, `MCG`.
     pub model: String,
-    /// D.
+    /// D, a whole number.
     pub dimension: u8,
     /// Id of the kernel.
     pub kernel: String,
     /// Id of the lattice, or `continuum`.
     pub lattice: String,
-    /// Δ/h; 0 in the continuum.
+    /// Δ/h, a pure number; 0 in the continuum.
     pub dx_over_h: f64,
     /// `constant` or `number-density`.
     pub volume_rule: String,
@@ -69,9 +69,9 @@ pub struct ViscosityConstant {
     pub regularised: bool,
     /// `shear-axis`, `shear-diagonal`, `compression`.
     pub direction: String,
-    /// What it should be.
+    /// What it should be, a pure number.
     pub derived: f64,
-    /// What is printed.
+    /// What is printed, a pure number.
     pub published: f64,
 }
 
@@ -81,19 +81,19 @@ pub struct ViscosityConstant {
 pub struct LaplacianFactor {
     /// Id of the operator.
     pub operator: String,
-    /// D.
+    /// D, a whole number.
     pub dimension: u8,
     /// Id of the lattice.
     pub lattice: String,
-    /// h/Δ.
+    /// h/Δ, a pure number.
     pub h_over_dx: f64,
     /// `constant` or `number-density`.
     pub volume_rule: String,
-    /// In the continuum.
+    /// In the continuum, a pure number.
     pub continuum: f64,
-    /// On the lattice.
+    /// On the lattice, a pure number.
     pub lattice_value: f64,
-    /// What is printed.
+    /// What is printed, a pure number.
     pub published: f64,
 }
 
@@ -105,9 +105,9 @@ pub struct InferredDomainSize {
     pub fit: String,
     /// In metres.
     pub value_m: f64,
-    /// Lower end of the interval.
+    /// Lower end of the interval, in metres.
     pub low: f64,
-    /// Upper end.
+    /// Upper end, in metres.
     pub high: f64,
 }
 
@@ -123,7 +123,7 @@ pub struct Provenance {
     pub title: String,
     /// SHA-256 of the scene's canonical form, in hexadecimal.
     pub scene_sha256: String,
-    /// Seed of all random numbers.
+    /// Seed of all random numbers, a whole number.
     pub seed: u64,
     /// Cargo features the program was built with.
     pub features: Vec<String>,
@@ -169,7 +169,7 @@ pub struct ClaimEntry {
     pub derived: Option<Column>,
     /// From particles.
     pub measured: Option<Column>,
-    /// Margin of the equivalence test, in the units of what is compared.
+    /// Margin of the equivalence test, in the unit of what is compared.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub margin: Option<f64>,
     /// The comparison.
@@ -193,7 +193,7 @@ pub struct Citation {
 pub struct Case {
     /// `lattice` or `cloud`.
     pub source: String,
-    /// D.
+    /// D, a whole number.
     pub dimension: u8,
     /// Id of the kernel.
     pub kernel: String,
@@ -217,10 +217,10 @@ pub struct Column {
     /// Exponents of a power law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub exponents: Option<Exponents>,
-    /// A constant or a ratio.
+    /// A constant or a ratio, in the unit of the next field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<Estimate>,
-    /// Unit of `value`.
+    /// Unit of `value`, `1` for a pure number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
     /// Whether something vanishes, and by what.
@@ -244,19 +244,19 @@ pub struct Column {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Exponents {
-    /// Of d̃, the amplitude of the displacement.
+    /// Of d̃, the amplitude of the displacement; a pure number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub displacement: Option<Estimate>,
-    /// Of h.
+    /// Of h; a pure number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub h: Option<Estimate>,
-    /// Of Δ/h.
+    /// Of Δ/h; a pure number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dx_over_h: Option<Estimate>,
-    /// Of Δ at constant h/Δ.
+    /// Of Δ at constant h/Δ; a pure number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dx: Option<Estimate>,
-    /// Of the time step.
+    /// Of the time step; a pure number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dt: Option<Estimate>,
 }
@@ -265,11 +265,11 @@ pub struct Exponents {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Estimate {
-    /// The number.
+    /// The number, in the unit of what holds the estimate: a pure number unless that says otherwise.
     pub value: Number,
-    /// Lower end of the interval.
+    /// Lower end of the interval, in the unit of `value`.
     pub low: Number,
-    /// Upper end of the interval.
+    /// Upper end of the interval, in the unit of `value`.
     pub high: Number,
     /// Where it comes from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -311,7 +311,7 @@ pub struct Zero {
     /// `symmetry` if the site's point group forces it, `value` if it happens to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
-    /// The largest magnitude found.
+    /// The largest magnitude found, in the unit of what vanishes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bound: Option<f64>,
 }
@@ -326,7 +326,7 @@ pub struct Trend {
     pub against: String,
     /// `rising`, `falling` or `constant`.
     pub direction: String,
-    /// The measured slope.
+    /// The measured slope, in the unit of `of` over the unit of `against`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slope: Option<Estimate>,
 }
@@ -343,10 +343,10 @@ pub struct Relation {
     pub right: String,
     /// Whether it holds.
     pub holds: bool,
-    /// Value of the left side.
+    /// Value of the left side, in the unit of the right side.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_value: Option<Estimate>,
-    /// Value of the right side.
+    /// Value of the right side, in the unit of the left side.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub right_value: Option<Estimate>,
 }
@@ -364,7 +364,7 @@ pub struct RolledVerdict {
     /// What the scene expects, if it says.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected: Option<Verdict>,
-    /// How many cases.
+    /// How many cases, a count.
     pub cases: usize,
 }
 
@@ -386,17 +386,17 @@ pub struct Fit {
     pub x: Axis,
     /// The ordinate.
     pub y: Axis,
-    /// Every point, kept or left out and why.
+    /// Every point, kept or left out and why; each number in the unit of its axis.
     pub points: Vec<FitPoint>,
-    /// The exponent.
+    /// The exponent, a pure number.
     pub slope: Estimate,
-    /// ln of the prefactor.
+    /// ln of the prefactor, a pure number: y in the unit of its axis.
     pub intercept: Estimate,
-    /// Residual standard deviation of ln y.
+    /// Residual standard deviation of ln y, a pure number.
     pub residual_sd: f64,
-    /// Kept points minus two.
+    /// Kept points minus two, a whole number.
     pub degrees_of_freedom: usize,
-    /// Coverage of the intervals.
+    /// Coverage of the intervals, a pure number from 0 to 1.
     pub coverage: f64,
     /// How the interval was made.
     pub interval: String,
@@ -406,23 +406,23 @@ pub struct Fit {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FitPoint {
-    /// Abscissa.
+    /// Abscissa, in the unit of the x axis.
     pub x: f64,
-    /// Ordinate: the envelope or the root mean square.
+    /// Ordinate: the envelope or the root mean square, in the unit of the y axis.
     pub y: f64,
-    /// Standard error of y, for sampled quantities.
+    /// Standard error of y, for sampled quantities, in the unit of the y axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub y_error: Option<f64>,
-    /// Mean of the norm over the samples.
+    /// Mean of the norm over the samples, in the unit of the y axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mean: Option<f64>,
-    /// Largest norm over the samples.
+    /// Largest norm over the samples, in the unit of the y axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max: Option<f64>,
-    /// Samples taken.
+    /// Samples taken, a count.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<u64>,
-    /// R/Δ at which the envelope was reached.
+    /// R/Δ at which the envelope was reached, a pure number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub support_over_dx: Option<f64>,
     /// Whether the fit uses it.
@@ -430,7 +430,7 @@ pub struct FitPoint {
     /// Why not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
-    /// Residual of ln y.
+    /// Residual of ln y, a pure number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub residual: Option<f64>,
 }
@@ -470,7 +470,7 @@ pub struct Series {
 pub struct Line {
     /// Name in the legend.
     pub name: String,
-    /// Points as \[x, y\] or \[x, y, error of y\].
+    /// Points as \[x, y\] or \[x, y, error of y\], each number in the unit of its axis.
     pub points: Vec<Vec<f64>>,
 }
 
@@ -491,11 +491,11 @@ pub struct LeftOut {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cost {
-    /// Exact sums over a support, one per component.
+    /// Exact sums over a support, one per component: a count.
     pub exact_sums: u64,
-    /// Disordered neighbourhoods.
+    /// Disordered neighbourhoods, a count.
     pub samples: u64,
-    /// Pairs for which the kernel was evaluated in floating point.
+    /// Pairs for which the kernel was evaluated in floating point, a count.
     pub pairs: u64,
 }
 
@@ -505,23 +505,23 @@ pub struct Cost {
 pub struct TimeRun {
     /// Operator.
     pub scheme: String,
-    /// Particles a side.
+    /// Particles a side, a count.
     pub n: u64,
-    /// h/Δ.
+    /// h/Δ, a pure number.
     pub h_over_dx: f64,
-    /// Randomness factor.
+    /// Randomness factor, a pure number.
     pub epsilon: f64,
     /// Time integrator.
     pub integrator: String,
     /// Boundary treatment.
     pub boundary: String,
-    /// L2 error.
+    /// L2 error, a pure number: temperatures are without unit.
     pub l2: f64,
-    /// L∞ error.
+    /// L∞ error, a pure number.
     pub linf: f64,
-    /// Conservation error.
+    /// Conservation error, a pure number.
     pub ec: f64,
-    /// Time steps.
+    /// Time steps, a count.
     pub steps: u64,
 }
 

@@ -12,6 +12,8 @@ mod error;
 mod exponents;
 mod fatehi_heat;
 mod fatehi_manzari_2011;
+mod known;
+mod literature;
 mod printed;
 mod rollup;
 mod verdict;
@@ -21,6 +23,8 @@ pub use compare::{Comparison, Judgement, Measured, compare_exponent, judge_conve
 pub use error::ClaimError;
 pub use exponents::{BetaExponent, Powers};
 pub use fatehi_heat::HeatStatement;
+pub use known::{Known, known};
+pub use literature::{Paper, literature};
 pub use printed::{PrintedCoefficient, printed_coefficients};
 pub use rollup::{CaseVerdict, roll_up};
 pub use verdict::Verdict;

@@ -1,6 +1,9 @@
 //! The arguments of each command.
 
-use super::pages::ReportArguments;
+pub(super) use super::report_arguments::{
+    CompletionArguments, DiffArguments, ExplainArguments, ManArguments, NewArguments, ReferenceArguments,
+    ReportArguments, SceneKind, ViewArguments,
+};
 use crate::study::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -18,12 +21,16 @@ const EXIT_CODES: &str = "Exit codes: 0 all verdicts as the scene expects, 1 som
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
+    /// Write a commented scene to start from
+    New(NewArguments),
     /// Run a scene and write its report
     Run(RunArguments),
     /// Make the report of a scene whose shards have been run
     Merge(MergeArguments),
-    /// Make pages to look at from reports
+    /// Show reports again, or write them in other forms
     Report(ReportArguments),
+    /// Say what changed from one report to another, in standard errors; exit code 1 if anything did
+    Diff(DiffArguments),
     /// Say what a scene would compute, and what it leaves out
     Plan(PlanArguments),
     /// Certified moment sums over a lattice, to any number of digits or in closed form
@@ -44,6 +51,14 @@ pub(super) enum Command {
     Advise(AdviseArguments),
     /// List what can be named in a scene
     List(ListArguments),
+    /// Tell a claim's story: what is printed where, what is checked, what the reports found
+    Explain(ExplainArguments),
+    /// Write the reference of all names, of scenes and of reports as Markdown
+    Reference(ReferenceArguments),
+    /// Print completions for a shell
+    Completions(CompletionArguments),
+    /// Print the manual page, or write those of all commands
+    Man(ManArguments),
 }
 
 #[derive(Debug, Clone, Args)]
@@ -68,6 +83,8 @@ pub(super) struct RunArguments {
     /// Print the report as JSON instead of a table
     #[arg(long)]
     pub(super) json: bool,
+    #[command(flatten)]
+    pub(super) views: ViewArguments,
     /// Write a page to look at as well, report.html, and the index of reports/
     #[arg(long)]
     pub(super) html: bool,
@@ -94,6 +111,8 @@ pub(super) struct MergeArguments {
     /// Print the report as JSON instead of a table
     #[arg(long)]
     pub(super) json: bool,
+    #[command(flatten)]
+    pub(super) views: ViewArguments,
     /// Write a page to look at as well, report.html, and the index of reports/
     #[arg(long)]
     pub(super) html: bool,
@@ -109,6 +128,7 @@ impl MergeArguments {
             shard: None,
             threads: None,
             json: self.json,
+            views: self.views.clone(),
             html: self.html,
             from: self.from.clone(),
         }

@@ -3,6 +3,7 @@
 use super::arguments::{ListArguments, Listed, SchemaArguments, SchemaOf};
 use super::execute::print_out;
 use super::exit::{Exit, Failure};
+use super::terminal::fitted;
 use crate::claim;
 use crate::kernel;
 use crate::language::operators;
@@ -33,10 +34,11 @@ pub(super) fn schema(arguments: &SchemaArguments) -> Result<Exit, Failure> {
 }
 
 /// (id, what it is, where from).
-type Entry = (String, String, String);
+pub(super) type Entry = (String, String, String);
 
-pub(super) fn list(arguments: &ListArguments) -> Result<Exit, Failure> {
-    let all: [(Listed, &str, Vec<Entry>); 7] = [
+/// All catalogues.
+pub(super) fn catalogues() -> [(Listed, &'static str, Vec<Entry>); 7] {
+    [
         (Listed::Kernels, "kernels", kernels()),
         (Listed::Lattices, "lattices", lattices()),
         (Listed::Disorders, "disorders", disorders()),
@@ -44,8 +46,12 @@ pub(super) fn list(arguments: &ListArguments) -> Result<Exit, Failure> {
         (Listed::Moments, "moments", moments()),
         (Listed::Operators, "operators", operators()),
         (Listed::Claims, "claims", claims()),
-    ];
-    let chosen = all.into_iter().filter(|(which, _, _)| arguments.what.is_none_or(|what| what == *which));
+    ]
+}
+
+pub(super) fn list(arguments: &ListArguments) -> Result<Exit, Failure> {
+    let chosen =
+        catalogues().into_iter().filter(|(which, _, _)| arguments.what.is_none_or(|what| what == *which));
     if arguments.json {
         let groups = chosen.map(|(_, name, entries)| {
             let entries: Vec<Value> = entries
@@ -65,7 +71,7 @@ pub(super) fn list(arguments: &ListArguments) -> Result<Exit, Failure> {
             let source = if source.is_empty() { String::new() } else { format!("  [{source}]") };
             text += &format!("  {id:width$}  {what}{source}\n");
         }
-        print_out(&text);
+        print_out(&fitted(&text));
     }
     Ok(Exit::AsExpected)
 }

@@ -2,9 +2,8 @@
 
 use super::arguments::{PlanArguments, RunArguments};
 use super::exit::{Exit, Failure};
-use super::pages;
 use super::progress::Progress;
-use super::terminal;
+use super::{pages, terminal, views};
 use crate::report::{assemble, check_target, to_json, write_report};
 use crate::study::{
     Analysis, BlockStore, Omission, Plan, RunOptions, SurveyScene, run as run_study, run_survey,
@@ -69,6 +68,7 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
         timings["timed"] = timed;
     }
     write_report(&out, &report, &timings)?;
+    views::write(&arguments.views, std::slice::from_ref(&report))?;
     if arguments.html {
         pages::beside(&out, arguments.out.is_none())?;
     }
@@ -110,7 +110,7 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<Exit, Failure> {
         text += &format!("  {}: {:.1e} pairs\n", task.label(), task.cost(&scene) as f64);
     }
     text += &left_out(&plan.omissions);
-    print_out(&text);
+    print_out(&terminal::fitted(&text));
     Ok(Exit::AsExpected)
 }
 
@@ -140,7 +140,7 @@ fn plan_survey(scene: &SurveyScene, as_json: bool) -> Exit {
         text += &format!("  {}: {:.1e} pairs\n", task.label, task.cost as f64);
     }
     text += &left_out(&omissions);
-    print_out(&text);
+    print_out(&terminal::fitted(&text));
     Exit::AsExpected
 }
 

@@ -1,8 +1,7 @@
 //! Exit codes that scripts can use, and what led to them.
 
 use crate::language::LanguageError;
-use crate::report::html::ReadError;
-use crate::report::{Report, Verdict, WriteError};
+use crate::report::{ReadError, Report, Verdict, WriteError, html};
 use crate::study::{SceneError, StudyError};
 use thiserror::Error;
 
@@ -11,7 +10,7 @@ use thiserror::Error;
 pub enum Exit {
     /// 0: all verdicts as the scene expects.
     AsExpected,
-    /// 1: a verdict differs from what the scene expects.
+    /// 1: a verdict differs from what the scene expects, or two reports from each other.
     Differs,
     /// 2: the input is wrong.
     WrongInput,
@@ -59,6 +58,8 @@ pub(super) enum Failure {
     Write(#[from] WriteError),
     #[error(transparent)]
     Read(#[from] ReadError),
+    #[error(transparent)]
+    Page(#[from] html::ReadError),
     #[error("{1}")]
     Operator(String, LanguageError),
     #[error("{0}")]

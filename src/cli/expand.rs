@@ -3,10 +3,10 @@
 use super::arguments::{ExpandArguments, ExpandFormat};
 use super::execute::print_out;
 use super::exit::{Exit, Failure};
+use super::files::write_file;
 use crate::language::{Operator, operators};
 use crate::particles::{Lattice, lattice, lattice_by_id};
 use crate::report::{ExpansionReport, expansion_report, printed_markdown, printed_verdicts, to_json};
-use crate::study::write_whole;
 use std::path::Path;
 
 pub(super) fn expand(arguments: &ExpandArguments) -> Result<Exit, Failure> {
@@ -27,8 +27,8 @@ pub(super) fn expand(arguments: &ExpandArguments) -> Result<Exit, Failure> {
             write(folder, &report(Some(&entry), operator)?)?;
         }
         let verdicts = printed_verdicts().map_err(|error| fault(&error))?;
-        write_file(folder, "printed-equations.md", &printed_markdown(&verdicts))?;
-        write_file(folder, "printed-equations.json", &to_json(&verdicts))?;
+        write_file(&folder.join("printed-equations.md"), &printed_markdown(&verdicts))?;
+        write_file(&folder.join("printed-equations.json"), &to_json(&verdicts))?;
         print_out(&format!("Written to {}.\n", folder.display()));
         return Ok(Exit::AsExpected);
     }
@@ -62,15 +62,6 @@ pub(super) fn expand(arguments: &ExpandArguments) -> Result<Exit, Failure> {
 
 /// `ID.txt` and `ID.tex`, each whole or not at all.
 fn write(folder: &Path, report: &ExpansionReport) -> Result<(), Failure> {
-    write_file(folder, &format!("{}.txt", report.id), &report.to_text())?;
-    write_file(folder, &format!("{}.tex", report.id), &report.to_latex())
-}
-
-fn write_file(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
-    let refused = |path: &Path, error: std::io::Error| {
-        Failure::Arguments(format!("cannot write {}: {error}", path.display()))
-    };
-    std::fs::create_dir_all(folder).map_err(|error| refused(folder, error))?;
-    let path = folder.join(name);
-    write_whole(&path, text.as_bytes()).map_err(|error| refused(&path, error))
+    write_file(&folder.join(format!("{}.txt", report.id)), &report.to_text())?;
+    write_file(&folder.join(format!("{}.tex", report.id)), &report.to_latex())
 }

@@ -4,17 +4,26 @@ mod advise;
 mod arguments;
 mod catalogue;
 mod diagnostic;
+mod diff;
 mod execute;
 mod exit;
 mod expand;
+mod explain;
+mod files;
 mod kernel;
+mod new;
 mod orders;
 mod pages;
 mod progress;
+mod reference;
+mod report;
+mod report_arguments;
 mod rms;
+mod shell;
 mod sums;
 mod symbol;
 mod terminal;
+mod views;
 
 pub use arguments::Arguments;
 pub use exit::Exit;
@@ -34,9 +43,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         }
     };
     let done = match &arguments.command {
+        Command::New(new) => new::new(new),
         Command::Run(run) => execute::run(run, false),
         Command::Merge(merge) => execute::run(&merge.as_run(), true),
-        Command::Report(arguments) => pages::report(arguments),
+        Command::Report(arguments) => report::report(arguments),
+        Command::Diff(arguments) => diff::diff(arguments),
         Command::Plan(plan) => execute::plan(plan),
         Command::Sums(arguments) => sums::sums(arguments),
         Command::Schema(schema) => catalogue::schema(schema),
@@ -47,6 +58,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Orders(arguments) => orders::orders(arguments),
         Command::Advise(arguments) => advise::advise(arguments),
         Command::List(list) => catalogue::list(list),
+        Command::Explain(claim) => explain::explain(claim),
+        Command::Reference(arguments) => reference::reference(arguments),
+        Command::Completions(arguments) => shell::completions(arguments),
+        Command::Man(arguments) => shell::man(arguments),
     };
     match done {
         Ok(exit) => exit,

@@ -1,29 +1,13 @@
 //! `report`, and `run --html`: pages and figures from the JSON alone.
 
+use super::arguments::ReportArguments;
 use super::execute::print_out;
 use super::exit::{Exit, Failure};
 use crate::report::html::{Placed, read_report, write_pages};
 use crate::report::{WriteError, figure::figures, svg};
 use crate::study::write_whole;
-use clap::Args;
 use std::fs;
 use std::path::{Path, PathBuf};
-
-#[derive(Debug, Args)]
-pub(super) struct ReportArguments {
-    /// Folders with a report.json, or folders of such folders
-    #[arg(required = true, value_name = "REPORT")]
-    pub(super) reports: Vec<PathBuf>,
-    /// Write a page for each, report.html
-    #[arg(long, required_unless_present = "figures")]
-    pub(super) html: bool,
-    /// Write every figure as an SVG file to a folder of the report's name under this one
-    #[arg(long, value_name = "DIR")]
-    pub(super) figures: Option<PathBuf>,
-    /// Folder of the pages and their index [default: each page beside its report]
-    #[arg(long, value_name = "DIR", requires = "html")]
-    pub(super) out: Option<PathBuf>,
-}
 
 pub(super) fn report(arguments: &ReportArguments) -> Result<Exit, Failure> {
     let mut reports = Vec::new();
@@ -88,7 +72,7 @@ fn each_beside(reports: &[Placed]) -> Result<Vec<PathBuf>, Failure> {
 }
 
 /// The folders with a report right below this one, in the order of their names.
-fn folders(path: &Path) -> Vec<PathBuf> {
+pub(super) fn folders(path: &Path) -> Vec<PathBuf> {
     if path.join("report.json").is_file() {
         return Vec::new();
     }

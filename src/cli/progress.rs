@@ -27,7 +27,11 @@ struct State {
 
 impl Progress {
     pub(super) fn new() -> Self {
-        let interactive = std::io::stderr().is_terminal();
+        // A terminal that cannot move its cursor, and a log that only looks like one, get lines.
+        let set =
+            |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty() && value != "false");
+        let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+        let interactive = std::io::stderr().is_terminal() && !dumb && !set("CI");
         let target =
             if interactive { ProgressDrawTarget::stderr_with_hz(8) } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(Some(0), target);

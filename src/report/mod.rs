@@ -2,13 +2,20 @@
 
 mod advise;
 mod assemble;
+mod csv;
+mod diff;
 mod expansion;
+mod explain;
 pub mod figure;
 pub mod html;
+mod junit;
+mod latex;
 mod layout;
 mod markdown;
+mod numbers;
 mod orders;
 mod printed;
+mod read;
 mod rich;
 mod rms;
 pub mod svg;
@@ -19,9 +26,14 @@ mod write;
 pub use crate::record::*;
 pub use advise::advice_text;
 pub use assemble::assemble;
+pub use csv::{csv_files, file_names};
+pub use diff::{Difference, ListChange, Place, ValueChange, VerdictChange, difference_text};
 pub use expansion::{
     ConservationReport, ExpansionReport, OrderReport, TermReport, Vanishes, expansion_report,
 };
+pub use explain::{Evidence, Story, UnknownClaim, stories};
+pub use junit::junit;
+pub use latex::{LatexError, latex_files, latex_shared};
 pub use layout::to_json;
 pub use markdown::markdown;
 pub use orders::{
@@ -29,6 +41,7 @@ pub use orders::{
     OrdersRequest, PublishedOrder, orders_report,
 };
 pub use printed::{PrintedError, PrintedVerdict, printed_markdown, printed_verdicts};
+pub use read::{ReadError, read_report};
 pub use rms::{RmsReport, SampledReport};
 pub use symbol::{NullMode, SymbolReport, WaveReport, symbol_report};
 pub use table::{Row, Section, sections};

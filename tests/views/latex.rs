@@ -1,0 +1,145 @@
+//! LaTeX: tables, figures and equations of all committed reports compile in one document.
+
+use crate::folder::{Folder, PROGRAM};
+use crate::{committed, list, report, repository};
+use std::collections::BTreeSet;
+use std::process::Command;
+use std::sync::OnceLock;
+
+/// All committed reports, written once.
+fn written() -> &'static Folder {
+    static FOLDER: OnceLock<Folder> = OnceLock::new();
+    FOLDER.get_or_init(|| {
+        let folder = Folder::new();
+        let reports = repository("reports");
+        // Without a limit of time: unoptimised, expanding every operator takes minutes.
+        let ran = Command::new(PROGRAM)
+            .arg("report")
+            .arg(reports)
+            .args(["--latex", "tex"])
+            .current_dir(folder.path("."))
+            .output()
+            .expect("the program starts");
+        assert!(ran.status.success() && ran.stdout.is_empty(), "{}", String::from_utf8_lossy(&ran.stderr));
+        folder
+    })
+}
+
+/// Whether a program is there; if not, says so.
+fn found(program: &str) -> bool {
+    let found = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
+    if !found {
+        eprintln!("skipped: {program} is not installed (Debian: .ci/texlive names the packages)");
+    }
+    found
+}
+
+fn pdflatex(folder: &Folder, arguments: &[&str]) {
+    let output = Command::new("pdflatex")
+        .args(["-interaction=nonstopmode", "-halt-on-error"])
+        .args(arguments)
+        .current_dir(folder.path("tex"))
+        .output()
+        .expect("pdflatex starts");
+    let log = String::from_utf8_lossy(&output.stdout).into_owned();
+    let end: Vec<&str> = log.lines().rev().take(40).collect();
+    let end: Vec<&str> = end.into_iter().rev().collect();
+    assert!(output.status.success(), "{arguments:?}:\n{}", end.join("\n"));
+}
+
+/// The most figures of one report that are compiled: its ladders are all made alike.
+const MOST_FIGURES: usize = 8;
+
+#[test]
+fn one_document_takes_in_all_reports() {
+    if !found("pdflatex") || !found("bibtex") {
+        return;
+    }
+    let folder = written();
+    let all = folder.text("tex/all.tex");
+    let mut kept = String::new();
+    let mut figures = std::collections::BTreeMap::<&str, usize>::new();
+    for line in all.lines() {
+        if let Some(rest) = line.strip_prefix("\\remainderfigure{") {
+            let seen = figures.entry(rest.split('/').next().unwrap_or_default()).or_default();
+            *seen += 1;
+            if *seen > MOST_FIGURES {
+                continue;
+            }
+        }
+        kept += line;
+        kept.push('\n');
+    }
+    assert!(figures.len() == committed().len(), "{figures:?}");
+    folder.write("tex/most.tex", kept);
+    pdflatex(folder, &["most"]);
+    let bibtex = Command::new("bibtex").arg("most").current_dir(folder.path("tex")).output().expect("bibtex");
+    assert!(bibtex.status.success(), "{}", String::from_utf8_lossy(&bibtex.stdout));
+    let log = String::from_utf8_lossy(&folder.bytes("tex/most.log")).into_owned();
+    let missing: Vec<&str> = log.lines().filter(|line| line.contains("Missing character")).collect();
+    assert!(missing.is_empty(), "{missing:#?}");
+}
+
+#[test]
+fn a_figure_becomes_a_pdf_of_its_own_size() {
+    if !found("pdflatex") {
+        return;
+    }
+    let folder = written();
+    let path = "\\def\\remainderpath{chaussonnet-2015/figures}\\def\\remaindername{chaussonnet-figure-10a}\\input{figure}";
+    pdflatex(folder, &["-jobname", "one", path]);
+    let pdf = folder.bytes("tex/one.pdf");
+    let text = String::from_utf8_lossy(&pdf);
+    // Uncompressed objects say the page's size; A4 and Letter are 842 and 792 points high.
+    let log = String::from_utf8_lossy(&folder.bytes("tex/one.log")).into_owned();
+    assert!(pdf.starts_with(b"%PDF") && !text.contains("841.89") && !text.contains("[0 0 612 792]"));
+    assert!(log.contains("Output written on one.pdf (1 page"), "{log}");
+}
+
+#[test]
+fn no_character_is_lost_and_only_what_is_cited_is_in_the_literature() {
+    let folder = written();
+    for (path, bytes) in folder.snapshot() {
+        let Some(text) = bytes.and_then(|bytes| String::from_utf8(bytes).ok()) else { continue };
+        if path.extension().is_some_and(|extension| extension == "tex") {
+            assert!(!text.contains("U+"), "{}: a character without a symbol", path.display());
+        }
+    }
+    let mut cited = BTreeSet::new();
+    for name in committed() {
+        let report = report(&name);
+        cited.extend(list(&report["claims"]).iter().map(|claim| claim["citation"]["source"].to_string()));
+    }
+    let bibliography = folder.text("tex/references.bib");
+    let entries: BTreeSet<String> = bibliography
+        .lines()
+        .filter_map(|line| line.strip_prefix('@')?.split_once('{'))
+        .map(|(_, key)| format!("\"{}\"", key.trim_end_matches(',')))
+        .collect();
+    assert_eq!(entries, cited);
+    // As it stands in references.bib.
+    let source = std::fs::read_to_string(repository("references.bib")).expect("references");
+    for entry in bibliography.split("\n\n").filter(|entry| !entry.trim().is_empty()) {
+        assert!(source.contains(entry.trim()), "{entry}");
+    }
+}
+
+#[test]
+fn the_verdict_table_says_what_the_report_says() {
+    let folder = written();
+    let table = folder.text("tex/fatehi-table-1/verdicts.tex");
+    for part in [
+        "\\toprule",
+        "\\bottomrule",
+        "S[table-format=",
+        "{$9/2$} & 4.656 & {[}\\num{4.498}, \\num{4.813}{]}",
+        "\\textbf{conditional}: on regular particles the leading error of F1",
+    ] {
+        assert!(table.contains(part), "'{part}' is not in:\n{table}");
+    }
+    let data = folder.text("tex/chaussonnet-2015/figures/chaussonnet-figure-10a.dat");
+    let mut lines = data.lines();
+    let width = lines.next().expect("a head").split(' ').count();
+    assert!(data.starts_with("x1 y1") && lines.all(|line| line.split(' ').count() == width));
+    assert!(folder.text("tex/fatehi-table-1/equations.tex").contains("Truncation error of F1"));
+}
