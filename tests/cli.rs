@@ -17,6 +17,8 @@ mod chaussonnet;
 mod exit_codes;
 #[path = "cli/expand.rs"]
 mod expand;
+#[path = "cli/extremes.rs"]
+mod extremes;
 #[path = "cli/folder.rs"]
 mod folder;
 #[path = "cli/interruptions.rs"]

@@ -43,3 +43,19 @@ fn expectations_are_of_claims_that_exist() {
         .run_to(2, "plan bad.toml")
         .says(&["chaussonnet-fit-25/hh", "the nearest is 'chaussonnet-fit-25/h'"]);
 }
+
+/// The committed scene in its short form: every verdict as the whole one expects it, derived errors only where they hold.
+#[test]
+fn a_first_look_comes_out_as_expected() {
+    let folder = Folder::new();
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/analyses/chaussonnet-2015");
+    folder.run_to(0, &format!("run {scene} --quick --out out --store store"));
+    let report = folder.json("out/report.json");
+    let claims = report["claims"].as_array().expect("claims");
+    let at_large = |claim: &&serde_json::Value| {
+        let errors = claim["id"].as_str().is_some_and(|id| id.starts_with("chaussonnet-laplacian/equal"));
+        errors && claim["case"]["disorder"] == "canonical:0.3125"
+    };
+    assert!(claims.iter().filter(at_large).count() > 0);
+    assert!(claims.iter().filter(at_large).all(|claim| claim["derived"].is_null()));
+}
