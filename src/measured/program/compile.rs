@@ -112,13 +112,39 @@ impl Program {
         let mut stored: Vec<Columns<'_>> = Vec::with_capacity(self.passes.len());
         for (index, pass) in self.passes.iter().enumerate() {
             let last = index + 1 == self.passes.len();
-            let scale = if last { self.unit(support) } else { 1.0 };
             // Pass 0 does not look at neighbours; the last one is taken where there are lists.
             let lists = (index > 0 || last).then_some(neighbours);
-            let values = run::pass(pass, self, &inputs, &stored, lists, scale)?;
+            let values = run::pass(pass, self, &inputs, &stored, lists)?;
             stored.push(Columns { values: Cow::Owned(values), stride: pass.columns.len(), offset: 0 });
         }
-        Ok(stored.pop().map(|columns| columns.values.into_owned()).unwrap_or_default())
+        let values = stored.pop().map(|columns| columns.values.into_owned()).unwrap_or_default();
+        self.in_units(values, self.unit(support), neighbours)
+    }
+
+    /// The values times the unit, if the largest of them is a number that keeps its digits.
+    fn in_units(
+        &self,
+        mut values: Vec<f64>,
+        unit: f64,
+        neighbours: &Neighbours,
+    ) -> Result<Vec<f64>, ProgramError> {
+        let (mut largest, mut place) = (0.0, 0);
+        for (at, value) in values.iter_mut().enumerate() {
+            if value.abs() > largest {
+                (largest, place) = (value.abs(), at);
+            }
+            *value *= unit;
+        }
+        let particle = || neighbours.centre(place / self.components.max(1));
+        match largest * unit {
+            value if !value.is_finite() => {
+                Err(ProgramError::NotFinite { particle: particle(), value: values[place] })
+            }
+            value if largest > 0.0 && value < f64::MIN_POSITIVE => {
+                Err(ProgramError::TooSmall { particle: particle() })
+            }
+            _ => Ok(values),
+        }
     }
 
     pub(super) fn all_passes(&self) -> &[Pass] {

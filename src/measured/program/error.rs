@@ -77,6 +77,14 @@ pub enum ProgramError {
         /// What was to be computed.
         tensor: &'static str,
     },
+    /// The largest of all values is below the numbers that keep their digits.
+    #[error(
+        "particle {particle}: the value is too small for a number that keeps its digits; choose another unit of length"
+    )]
+    TooSmall {
+        /// The particle of the largest value.
+        particle: usize,
+    },
     /// A value that is not finite: a division by zero, a neighbour that the cloud does not have, or a field that is not
     /// finite itself.
     #[error(

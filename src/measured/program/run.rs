@@ -97,7 +97,6 @@ pub(super) fn pass(
     inputs: &Inputs<'_>,
     stored: &[Columns<'_>],
     lists: Option<&Neighbours>,
-    scale: f64,
 ) -> Result<Vec<f64>, ProgramError> {
     let width = pass.columns.len();
     let count = lists.map_or(inputs.particles, Neighbours::len);
@@ -111,7 +110,7 @@ pub(super) fn pass(
         .enumerate()
         .map_init(Scratch::default, |scratch, (chunk, values)| {
             let first = chunk * PARTICLES;
-            context.run(scratch, first..first + values.len() / width, values, scale).err()
+            context.run(scratch, first..first + values.len() / width, values).err()
         })
         .collect();
     failures.into_iter().flatten().next().map_or(Ok(values), Err)
@@ -136,7 +135,6 @@ impl<'a> Context<'a> {
         scratch: &mut Scratch,
         lists: Range<usize>,
         values: &mut [f64],
-        scale: f64,
     ) -> Result<(), ProgramError> {
         scratch.prepare(self.pass);
         let count = lists.len();
@@ -157,7 +155,7 @@ impl<'a> Context<'a> {
             for (value, result) in
                 values.iter_mut().skip(column).step_by(self.pass.columns.len()).zip(results)
             {
-                *value = result * scale;
+                *value = *result;
             }
         }
         match values.iter().position(|value| !value.is_finite()) {

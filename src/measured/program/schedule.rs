@@ -507,20 +507,37 @@ fn terms_of(terms: &[(super::expression::Real, Id)]) -> Vec<(f64, Id)> {
     terms.iter().map(|(coefficient, id)| (coefficient.get(), *id)).collect()
 }
 
-/// Whether the field is read where it stands, and by the last pass alone.
+/// Whether the field is read where it stands, and nothing that depends on it is taken from a neighbour: u − u_i may then stand
+/// for u everywhere, i the particle that the value is of.
 pub(super) fn takes_values(passes: &[Pass]) -> bool {
-    let Some((last, earlier)) = passes.split_last() else { return false };
+    let mut depends: Vec<bool> = Vec::with_capacity(passes.len());
+    for pass in passes {
+        let of_field = |source: Source| match source {
+            Source::Field(_) => true,
+            Source::Stored { pass, .. } => depends[pass],
+            Source::Quantity(_) => false,
+        };
+        let taken_from_neighbour = |operation: &Operation| match operation {
+            Operation::Gather(source @ Source::Stored { .. })
+            | Operation::Difference(source @ Source::Stored { .. }) => of_field(*source),
+            _ => false,
+        };
+        if pass.operations().any(taken_from_neighbour) {
+            return false;
+        }
+        let own = pass.sources().any(of_field);
+        depends.push(own);
+    }
     let reads = |operation: &Operation| {
         matches!(operation, Operation::Gather(Source::Field(_)) | Operation::Own(Source::Field(_)))
     };
-    !earlier.iter().any(Pass::reads_field) && last.operations().any(reads)
+    passes.iter().flat_map(Pass::operations).any(reads)
 }
 
-/// Has the last pass read u − u_i for u.
+/// Has u − u_i read for u.
 pub(super) fn take_differences(passes: &mut [Pass]) {
-    let Some(last) = passes.last_mut() else { return };
-    let instructions = last.pairs.instructions.iter_mut().chain(&mut last.particles.instructions);
-    for instruction in instructions {
+    let code = passes.iter_mut().flat_map(|pass| [&mut pass.pairs, &mut pass.particles]);
+    for instruction in code.flat_map(|code| &mut code.instructions) {
         if let Instruction::Compute { operation, .. } = instruction {
             match operation {
                 Operation::Gather(source @ Source::Field(_)) => *operation = Operation::Difference(*source),
@@ -538,10 +555,6 @@ impl Pass {
             Instruction::Compute { operation, .. } => Some(operation),
             _ => None,
         })
-    }
-
-    fn reads_field(&self) -> bool {
-        self.sources().any(|source| matches!(source, Source::Field(_)))
     }
 
     /// Where its code reads from.
