@@ -34,7 +34,8 @@ pub(super) fn pieces(text: &str) -> Vec<(Level, String)> {
             found.push((Level::Line, std::mem::take(&mut line)));
         }
         let script: String = characters[at + 1..at + 1 + length].iter().collect();
-        let inner = script.strip_prefix('{').and_then(|inner| inner.strip_suffix('}')).unwrap_or(&script);
+        let bare = |open, close| script.strip_prefix(open).and_then(|inner: &str| inner.strip_suffix(close));
+        let inner = bare('{', '}').or_else(|| bare('(', ')')).unwrap_or(&script);
         found.push((level, inner.replace('-', "−")));
         at += 1 + length;
     }
@@ -55,6 +56,9 @@ fn stands_alone(before: &[char]) -> bool {
 fn script_length(rest: &[char], level: Level) -> usize {
     match rest.first() {
         Some('{') => rest.iter().position(|c| *c == '}').map_or(0, |end| end + 1),
+        Some('(') if level == Level::Superscript => {
+            rest.iter().position(|c| *c == ')').map_or(0, |end| end + 1)
+        }
         Some('-' | '−' | '+') if rest.get(1).is_some_and(char::is_ascii_digit) => {
             1 + number_length(&rest[1..])
         }
@@ -111,8 +115,9 @@ mod tests {
     fn powers_and_indices_leave_the_line() {
         assert_eq!(marked("d̃/h^{2} (Δ/h)^{β+1}"), "d̃/h⌈2⌉ (Δ/h)⌈β+1⌉");
         assert_eq!(marked("(h/Δ)^3/2 at"), "(h/Δ)⌈3/2⌉ at");
+        assert_eq!(marked("O(Δx/h)^(β+2),"), "O(Δx/h)⌈β+2⌉,");
         assert_eq!(marked("h^-1, E_0^1"), "h⌈−1⌉, E⌊0⌋⌈1⌉");
-        assert_eq!(marked("u_i Σ_j ω_j ∇W_ij"), "u⌊i⌋ Σ_j ω⌊j⌋ ∇W⌊ij⌋");
+        assert_eq!(marked("u_i Σ_j ω_j ∇W_ij"), "u⌊i⌋ Σ⌊j⌋ ω⌊j⌋ ∇W⌊ij⌋");
     }
 
     #[test]

@@ -22,8 +22,7 @@ pub fn exponents(report: &Report) -> Option<Figure> {
         let (Some(derived), Some(measured)) = (exponent(&entry.derived), exponent(&entry.measured)) else {
             continue;
         };
-        let numbers =
-            [&derived.value, &measured.value, &measured.low, &measured.high].map(|number| value_of(number));
+        let numbers = [&derived.value, &measured.value, &measured.low, &measured.high].map(value_of);
         let [Some(x), Some(y), Some(low), Some(high)] = numbers else { continue };
         all.push((entry.case.dimension, Point { x, y, error: Some(0.5 * (high - low)) }));
     }

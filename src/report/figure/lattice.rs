@@ -37,9 +37,17 @@ fn chosen<'a>(cases: &[(&'a Case, usize)]) -> Vec<&'a Case> {
         disorder_name(case).split(':').next().unwrap_or_default()
     }
     let mut order: Vec<&(&Case, usize)> = cases.iter().collect();
-    // Disorder is best seen in the plane.
-    order.sort_by_key(|(case, count)| {
-        (disorder_name(case) == "regular", case.dimension != 2, std::cmp::Reverse(*count))
+    // Disorder is best seen in the plane, and where it is strong.
+    let amplitude = |case: &Case| {
+        let disorder = Disorder::parse(case.disorder.as_deref().unwrap_or("none"));
+        disorder.map_or(0.0, |disorder| disorder.amplitude())
+    };
+    order.sort_by(|(a, many), (b, few)| {
+        let regular = |case: &Case| disorder_name(case) == "regular";
+        (regular(a), a.dimension != 2)
+            .cmp(&(regular(b), b.dimension != 2))
+            .then(amplitude(b).total_cmp(&amplitude(a)))
+            .then(few.cmp(many))
     });
     let mut found: Vec<&Case> = Vec::new();
     for round in 0..2 {
@@ -159,6 +167,10 @@ fn support(report: &Report, case: &Case, support_over_h: f64) -> Option<f64> {
         .or_else(|| {
             let factor = report.laplacian_factors.iter().find(|f| Some(&f.lattice) == case.lattice.as_ref());
             Some(factor?.h_over_dx * support_over_h)
+        })
+        .or_else(|| {
+            let of_runs = report.runs.iter().map(|run| run.h_over_dx * support_over_h);
+            of_runs.reduce(f64::min)
         })
         .filter(|support| *support <= READABLE[1])
 }

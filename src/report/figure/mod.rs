@@ -15,6 +15,7 @@ mod work;
 pub use crate::record::Axis;
 pub use exponents::exponents;
 pub use ladder::{Ladder, ladders};
+pub(super) use names::value_of;
 pub use range::Range;
 
 use crate::record::Report;

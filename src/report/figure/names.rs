@@ -3,7 +3,7 @@
 use crate::record::{Case, Estimate, Number};
 
 /// The number as `f64`; "p/q" is divided.
-pub(crate) fn value_of(number: &Number) -> Option<f64> {
+pub(in crate::report) fn value_of(number: &Number) -> Option<f64> {
     match number {
         Number::Float(value) => Some(*value),
         Number::Rational(text) => match text.split_once('/') {
@@ -14,7 +14,7 @@ pub(crate) fn value_of(number: &Number) -> Option<f64> {
 }
 
 /// An exponent as a label: exact as it is, else with two decimals.
-pub(crate) fn exponent_label(estimate: &Estimate) -> String {
+pub(in crate::report) fn exponent_label(estimate: &Estimate) -> String {
     match &estimate.value {
         Number::Rational(text) => text.replace('-', "−"),
         Number::Float(value) => format!("{value:.2}").replace('-', "−"),
@@ -22,7 +22,7 @@ pub(crate) fn exponent_label(estimate: &Estimate) -> String {
 }
 
 /// A disorder, or `regular`.
-pub(crate) fn disorder_name(case: &Case) -> &str {
+pub(in crate::report) fn disorder_name(case: &Case) -> &str {
     match case.disorder.as_deref() {
         None | Some("none") => "regular",
         Some(disorder) => disorder,
@@ -30,7 +30,7 @@ pub(crate) fn disorder_name(case: &Case) -> &str {
 }
 
 /// The case in a line: dimension, kernel, lattice, disorder, volume rule.
-pub(crate) fn case_name(case: &Case) -> String {
+pub(in crate::report) fn case_name(case: &Case) -> String {
     let lattice = case.lattice.as_deref().unwrap_or(&case.source);
     format!(
         "{}-D, {}, {lattice}, {}, {} volumes",

@@ -21,6 +21,10 @@ fn figure(table: &str, rows: &[BTreeMap<String, Value>]) -> Option<Figure> {
     );
     let mut groups: BTreeMap<String, Vec<Point>> = BTreeMap::new();
     for row in rows {
+        // A run that was stopped has an error, but no result.
+        if row.get("stopped").is_some_and(|why| !why.is_null()) {
+            continue;
+        }
         let (Some(x), Some(y)) = (number(row, "flops"), number(row, "l2")) else { continue };
         if figure.shows(x, y) {
             let scheme = row.get("scheme").and_then(Value::as_str).unwrap_or("runs");

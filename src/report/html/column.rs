@@ -2,7 +2,8 @@
 
 use super::math::{measured, short_order};
 use super::text::{estimate, number, rich};
-use crate::record::{ClaimEntry, Column};
+use crate::record::{ClaimEntry, Column, Estimate, significant};
+use crate::report::figure::value_of;
 use crate::report::rich::escaped;
 
 /// Which of the three.
@@ -94,7 +95,7 @@ pub(super) fn summary(entries: &[&ClaimEntry], which: Which) -> String {
         let cells = distinct(&own);
         let told = match cells.as_slice() {
             [only] => only.clone(),
-            [one, two] if which != Which::Measured => format!("{one} or<br/>{two}"),
+            [one, two] if which != Which::Measured => format!("{one}\u{a0}or<br/>{two}"),
             _ => spread(&own, which).unwrap_or_else(|| format!("{} cases", own.len())),
         };
         let head = if dimensions.len() > 1 { format!("<b>{dimension}-D</b> ") } else { String::new() };
@@ -103,35 +104,25 @@ pub(super) fn summary(entries: &[&ClaimEntry], which: Which) -> String {
     lines.join("<br/>")
 }
 
-/// From the least to the largest exponent of Δ/h, or value.
+/// From the least to the largest exponent or value.
 fn spread(entries: &[&ClaimEntry], which: Which) -> Option<String> {
-    use crate::record::Number;
-    let value = |number: &Number| match number {
-        Number::Float(value) => Some(*value),
-        Number::Rational(text) => match text.split_once('/') {
-            Some((p, q)) => Some(p.parse::<f64>().ok()? / q.parse::<f64>().ok()?),
-            None => text.parse().ok(),
-        },
-    };
-    let columns: Vec<&Column> = entries.iter().filter_map(|entry| which.of(entry)).collect();
-    let exponents: Vec<f64> = columns
-        .iter()
-        .filter_map(|column| value(&column.exponents.as_ref()?.dx_over_h.as_ref()?.value))
-        .collect();
-    let values: Vec<f64> = columns.iter().filter_map(|column| value(&column.value.as_ref()?.value)).collect();
-    let ends = |all: &[f64]| {
-        let least = all.iter().copied().reduce(f64::min)?;
-        let most = all.iter().copied().reduce(f64::max)?;
-        Some((least, most))
-    };
-    let short = |value: f64| number(crate::record::significant(value, 3));
-    if exponents.len() == entries.len() {
-        let (least, most) = ends(&exponents)?;
-        return Some(format!("(Δ/h)<sup>{} … {}</sup>", short(least), short(most)));
-    }
-    if values.len() == entries.len() {
-        let (least, most) = ends(&values)?;
-        return Some(format!("{} … {}", short(least), short(most)));
-    }
-    None
+    type Pick = fn(&Column) -> Option<&Estimate>;
+    let picks: [(&str, Pick); 6] = [
+        ("(Δ/h)", |column| column.exponents.as_ref()?.dx_over_h.as_ref()),
+        ("d̃", |column| column.exponents.as_ref()?.displacement.as_ref()),
+        ("h", |column| column.exponents.as_ref()?.h.as_ref()),
+        ("Δ", |column| column.exponents.as_ref()?.dx.as_ref()),
+        ("Δt", |column| column.exponents.as_ref()?.dt.as_ref()),
+        ("", |column| column.value.as_ref()),
+    ];
+    let short = |value: f64| number(significant(value, 3));
+    picks.into_iter().find_map(|(base, pick)| {
+        let values: Option<Vec<f64>> =
+            entries.iter().map(|entry| value_of(&pick(which.of(entry)?)?.value)).collect();
+        let values = values?;
+        let least = short(values.iter().copied().reduce(f64::min)?);
+        let most = short(values.iter().copied().reduce(f64::max)?);
+        let range = if least == most { least } else { format!("{least} … {most}") };
+        Some(if base.is_empty() { range } else { format!("{base}<sup>{range}</sup>") })
+    })
 }

@@ -47,12 +47,18 @@ fn power(base: Base, exponent: &Estimate) -> String {
     if is_number(&exponent.value, 1.0) {
         return base.math.to_owned();
     }
-    format!("<msup>{}{}</msup>", base.math, script(&exponent.value))
+    format!("<msup>{}{}</msup>", base.math, script(exponent))
+}
+
+/// Two decimals at most: a printed −1 is no −1.00.
+fn brief(value: f64) -> String {
+    format!("{}", (value * 100.0).round() / 100.0)
 }
 
 /// A number as an exponent: a fraction keeps its bar.
-fn script(value: &Number) -> String {
-    let text = match value {
+fn script(exponent: &Estimate) -> String {
+    let text = match &exponent.value {
+        Number::Float(value) if exponent.low == exponent.high => brief(*value),
         Number::Float(value) => format!("{value:.2}"),
         Number::Rational(text) => text.clone(),
     };
@@ -74,7 +80,7 @@ pub(super) fn short_order(exponents: &Exponents) -> String {
             return base.html.to_owned();
         }
         let value = match &exponent.value {
-            Number::Float(value) => format!("{value:.2}").replace('-', "−"),
+            Number::Float(value) => brief(*value).replace('-', "−"),
             exact => exact_or_rounded(exact),
         };
         format!("{}<sup>{value}</sup>", base.html)
@@ -94,8 +100,11 @@ pub(super) fn measured(exponents: &Exponents) -> String {
             Number::Float(value) => format!("{value:.2}").replace('-', "−"),
             exact => exact_or_rounded(exact),
         };
-        let interval =
-            if e.low == e.high { String::new() } else { format!(" [{}, {}]", two(&e.low), two(&e.high)) };
+        let interval = if e.low == e.high {
+            String::new()
+        } else {
+            format!(" [{},\u{a0}{}]", two(&e.low), two(&e.high))
+        };
         Some(format!("{}<sup>{}</sup>{interval}", base.html, two(&e.value)))
     };
     let all: Vec<String> = BASES.into_iter().zip(all).rev().filter_map(of).collect();

@@ -70,36 +70,35 @@ fn render(report: &Report, ladders: &[Ladder], links: Links<'_>, detail: Detail)
     if provenance.quick {
         body.push_str("<p><strong>A first look: shortened ladders, few samples.</strong></p>");
     }
-    contents(&mut body, report);
-    body.push_str("</header>\n<main>");
-    verdicts::verdicts(&mut body, report, ladders, detail);
-    figures(&mut body, report, ladders, detail);
-    computed(&mut body, report);
-    tables::tables(&mut body, report);
-    left_out(&mut body, report);
-    references(&mut body, report);
-    provenance_section(&mut body, report, links);
-    body.push_str("</main>");
+    let mut main = String::new();
+    verdicts::verdicts(&mut main, report, ladders, detail);
+    figures(&mut main, report, ladders, detail);
+    computed(&mut main, report);
+    tables::tables(&mut main, report);
+    left_out(&mut main, report);
+    references(&mut main, report);
+    provenance_section(&mut main, report, links);
+    contents(&mut body, &main);
+    let _ = write!(body, "</header>\n<main>{main}</main>");
     shell::page(title, &body)
 }
 
-fn contents(body: &mut String, report: &Report) {
-    body.push_str("<nav aria-label=\"Contents\"><ul><li><a href=\"#verdicts\">Verdicts</a></li>");
-    body.push_str(
-        "<li><a href=\"#figures\">Figures</a></li><li><a href=\"#computed\">What was computed</a></li>",
-    );
-    let no_table = report.tables.is_empty()
-        && report.runs.is_empty()
-        && report.viscosity_constants.is_empty()
-        && report.laplacian_factors.is_empty()
-        && report.inferred_domain_size.is_empty();
-    if !no_table {
-        body.push_str("<li><a href=\"#tables\">Tables</a></li>");
+/// Links to the sections that are there.
+fn contents(body: &mut String, main: &str) {
+    let sections = [
+        ("verdicts", "Verdicts"),
+        ("figures", "Figures"),
+        ("computed", "What was computed"),
+        ("tables", "Tables"),
+        ("left-out", "Left out"),
+        ("references", "References"),
+        ("provenance", "Provenance"),
+    ];
+    body.push_str("<nav aria-label=\"Contents\"><ul>");
+    for (id, name) in sections.iter().filter(|(id, _)| main.contains(&format!("<h2 id=\"{id}\">"))) {
+        let _ = write!(body, "<li><a href=\"#{id}\">{name}</a></li>");
     }
-    if !report.left_out.is_empty() {
-        body.push_str("<li><a href=\"#left-out\">Left out</a></li>");
-    }
-    body.push_str("<li><a href=\"#references\">References</a></li><li><a href=\"#provenance\">Provenance</a></li></ul></nav>");
+    body.push_str("</ul></nav>");
 }
 
 fn figure(body: &mut String, figure: &Figure) {
@@ -132,15 +131,19 @@ fn computed(body: &mut String, report: &Report) {
 }
 
 fn figures(body: &mut String, report: &Report, ladders: &[Ladder], detail: Detail) {
+    let shown: Vec<Figure> = exponents(report).into_iter().chain(overviews(report)).collect();
+    // Fits that no claim rests on stand here; the others are in the evidence of their claims.
+    let own: Vec<&Ladder> = ladders.iter().filter(|ladder| ladder.claims.is_empty()).collect();
+    if shown.is_empty() && own.is_empty() {
+        return;
+    }
     body.push_str(
         "<section aria-labelledby=\"figures\"><h2 id=\"figures\">Figures</h2><div class=\"figures\">\n",
     );
-    for shown in exponents(report).iter().chain(&overviews(report)) {
-        figure(body, shown);
+    for one in &shown {
+        figure(body, one);
     }
     body.push_str("</div>");
-    // Fits that no claim rests on stand here; the others are in the evidence of their claims.
-    let own: Vec<&Ladder> = ladders.iter().filter(|ladder| ladder.claims.is_empty()).collect();
     if !own.is_empty() && detail == Detail::Full {
         let _ = write!(
             body,

@@ -13,22 +13,51 @@ const MOST_ROWS: usize = 240;
 /// Longer tables are closed at first.
 const OPEN_ROWS: usize = 16;
 
+/// Columns in the order of their types.
+const DOMAIN: &[&str] = &["fit", "value_m", "low", "high"];
+const LAPLACIAN: &[&str] = &[
+    "operator",
+    "dimension",
+    "lattice",
+    "h_over_dx",
+    "volume_rule",
+    "continuum",
+    "lattice_value",
+    "published",
+];
+const VISCOSITY: &[&str] = &[
+    "model",
+    "dimension",
+    "kernel",
+    "lattice",
+    "dx_over_h",
+    "volume_rule",
+    "regularised",
+    "direction",
+    "derived",
+    "published",
+];
+const RUNS: &[&str] =
+    &["scheme", "n", "h_over_dx", "epsilon", "integrator", "boundary", "l2", "linf", "ec", "steps"];
+
 /// All tables, those of their own type first.
 pub(super) fn tables(page: &mut String, report: &Report) {
-    let mut all: Vec<(String, Vec<Value>)> = vec![
-        ("inferred domain size".into(), plain(&report.inferred_domain_size)),
-        ("laplacian factors".into(), plain(&report.laplacian_factors)),
-        ("viscosity constants".into(), plain(&report.viscosity_constants)),
-        ("runs".into(), plain(&report.runs)),
+    let mut all: Vec<(String, Vec<Value>, &[&str])> = vec![
+        ("inferred domain size".into(), plain(&report.inferred_domain_size), DOMAIN),
+        ("laplacian factors".into(), plain(&report.laplacian_factors), LAPLACIAN),
+        ("viscosity constants".into(), plain(&report.viscosity_constants), VISCOSITY),
+        ("runs".into(), plain(&report.runs), RUNS),
     ];
-    all.extend(report.tables.iter().map(|(name, rows)| (name.replace('_', " "), plain(rows))));
-    all.retain(|(_, rows)| !rows.is_empty());
+    all.extend(
+        report.tables.iter().map(|(name, rows)| (name.replace('_', " "), plain(rows), &[] as &[&str])),
+    );
+    all.retain(|(_, rows, _)| !rows.is_empty());
     if all.is_empty() {
         return;
     }
     page.push_str("<section aria-labelledby=\"tables\"><h2 id=\"tables\">Tables</h2>");
-    for (name, rows) in &all {
-        table(page, name, rows);
+    for (name, rows, order) in &all {
+        table(page, name, rows, order);
     }
     page.push_str("</section>");
 }
@@ -37,11 +66,23 @@ fn plain<T: Serialize>(rows: &[T]) -> Vec<Value> {
     rows.iter().filter_map(|row| serde_json::to_value(row).ok()).collect()
 }
 
-fn table(page: &mut String, name: &str, rows: &[Value]) {
-    let Some(keys) = rows.first().and_then(Value::as_object).map(|first| first.keys().collect::<Vec<_>>())
-    else {
-        return;
-    };
+/// The columns: as their type has them, else those of words first, as they say what the row is about.
+fn columns<'a>(rows: &'a [Value], order: &[&'a str]) -> Vec<&'a str> {
+    let Some(first) = rows.first().and_then(Value::as_object) else { return Vec::new() };
+    if !order.is_empty() {
+        return order.to_vec();
+    }
+    let mut keys: Vec<&str> = first.keys().map(String::as_str).collect();
+    keys.sort_by_key(|key| !is_text(rows, key));
+    keys
+}
+
+fn is_text(rows: &[Value], key: &str) -> bool {
+    rows.iter().any(|row| row.get(key).is_some_and(Value::is_string))
+}
+
+fn table(page: &mut String, name: &str, rows: &[Value], order: &[&str]) {
+    let keys = columns(rows, order);
     let name = escaped(name);
     let open = if rows.len() <= OPEN_ROWS { " open=\"open\"" } else { "" };
     let _ = write!(
@@ -50,16 +91,16 @@ fn table(page: &mut String, name: &str, rows: &[Value]) {
          <div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Table {name}\"><table><thead><tr>",
         rows.len()
     );
-    for name in &keys {
-        let _ = write!(page, "<th scope=\"col\">{}</th>", key(name));
+    let classes: Vec<&str> =
+        keys.iter().map(|key| if is_text(rows, key) { " class=\"w\"" } else { "" }).collect();
+    for (name, class) in keys.iter().zip(&classes) {
+        let _ = write!(page, "<th scope=\"col\"{class}>{}</th>", key(name));
     }
     page.push_str("</tr></thead><tbody>");
     for row in rows.iter().take(MOST_ROWS) {
         page.push_str("<tr>");
-        for key in &keys {
-            let held = row.get(key.as_str());
-            let class = if held.is_some_and(Value::is_string) { " class=\"w\"" } else { "" };
-            let _ = write!(page, "<td{class}>{}</td>", value(held));
+        for (key, class) in keys.iter().zip(&classes) {
+            let _ = write!(page, "<td{class}>{}</td>", value(row.get(*key)));
         }
         page.push_str("</tr>\n");
     }

@@ -76,7 +76,7 @@ pub(super) fn estimate(estimate: &Estimate) -> String {
     if estimate.low == estimate.high {
         return value;
     }
-    format!("{value} [{}, {}]", exact_or_rounded(&estimate.low), exact_or_rounded(&estimate.high))
+    format!("{value} [{},\u{a0}{}]", exact_or_rounded(&estimate.low), exact_or_rounded(&estimate.high))
 }
 
 /// A value of a table or a case.
@@ -107,7 +107,12 @@ pub(super) fn key(name: &str) -> String {
     if let Some((_, words)) = known.iter().find(|(own, _)| *own == name) {
         return (*words).to_owned();
     }
-    escaped(&name.replace("_over_", " over ").replace('_', " "))
+    // Lengths of the record say their unit at the end of their name.
+    let (name, unit) = match name.strip_suffix("_m") {
+        Some(name) => (name, " [m]"),
+        None => (name, ""),
+    };
+    format!("{}{unit}", escaped(&name.replace("_over_", " over ").replace('_', " ")))
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use super::Detail;
 use super::citation::Reference;
 use super::column::{Which, cell, summary};
 use super::evidence::{Fitted, evidence};
+use super::math::order;
 use super::text::rich;
 use crate::record::{ClaimEntry, Report, Verdict};
 use crate::report::figure::Ladder;
@@ -86,6 +87,14 @@ fn claim(
         },
         rich(&section.location)
     );
+    let orders: Vec<_> =
+        entries.iter().filter_map(|entry| Which::Published.of(entry)?.exponents.as_ref()).collect();
+    if let [first, rest @ ..] = orders.as_slice() {
+        // In terms of β the printed order differs from kernel to kernel: the cases have it then.
+        if rest.iter().all(|other| other == first) {
+            let _ = write!(page, "<p>Published: {}</p>", order(first));
+        }
+    }
     if let Some([operator, expansion, conserves]) = &section.operator {
         let _ = write!(
             page,

@@ -158,7 +158,7 @@ fn x_ticks(figure: &Figure, range: &Range, width_there: f64) -> Vec<Tick> {
     };
     let tried = (2..=7).rev().map(|most| ticks(range.x[0], range.x[1], figure.x.log, most));
     let mut ticks =
-        tried.clone().find(|ticks| apart(ticks)).or_else(|| tried.clone().last()).unwrap_or_default();
+        tried.clone().find(|ticks| apart(ticks)).or_else(|| tried.clone().next_back()).unwrap_or_default();
     // Whatever still touches its neighbour on the left loses its label.
     let mut end = f64::NEG_INFINITY;
     for tick in &mut ticks {
