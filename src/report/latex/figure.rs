@@ -39,7 +39,14 @@ pub(super) fn pgfplots(figure: &Figure, stem: &str) -> (String, String) {
     let _ = writeln!(source, "\\begin{{tikzpicture}}\n\\begin{{axis}}[{}]", options.join(",\n  "));
     let mut data = Data::default();
     for layer in &figure.layers {
-        layer_source(&mut source, &mut data, layer, stem);
+        match &layer.mark {
+            // TeX has no numbers for what lies far off.
+            Mark::Line { points, dash } => {
+                let mark = Mark::Line { points: cut(points, figure), dash: *dash };
+                layer_source(&mut source, &mut data, &Layer { mark, ..layer.clone() }, stem);
+            }
+            _ => layer_source(&mut source, &mut data, layer, stem),
+        }
     }
     let names: Vec<&str> = figure.layers.iter().filter_map(|layer| layer.name.as_deref()).collect();
     if names.len() > MOST_NAMES {
@@ -59,6 +66,48 @@ fn thick(figure: &Figure) -> [f64; 2] {
     }
     let middle = 0.5 * (range.y[0] + range.y[1]);
     [middle - 0.5 * least, middle + 0.5 * least]
+}
+
+/// A line as far as it runs within the figure and as much again on each side; `nan` where it is interrupted.
+fn cut(points: &[[f64; 2]], figure: &Figure) -> Vec<[f64; 2]> {
+    let log = [figure.x.log, figure.y.log];
+    let to = |axis: usize, value: f64| if log[axis] { libm::log(value) } else { value };
+    let from = |axis: usize, value: f64| if log[axis] { libm::exp(value) } else { value };
+    let ends = [figure.range().x, thick(figure)];
+    let room: [[f64; 2]; 2] = std::array::from_fn(|axis| {
+        let [low, high] = ends[axis].map(|end| to(axis, end));
+        [low - (high - low), high + (high - low)]
+    });
+    let mut line: Vec<[f64; 2]> = Vec::new();
+    for pair in points.windows(2) {
+        let [a, b] = [0, 1].map(|end| [to(0, pair[end][0]), to(1, pair[end][1])]);
+        // The part of the segment, from 0 to 1, that lies in the room along both axes.
+        let (mut first, mut last) = (0.0_f64, 1.0_f64);
+        for axis in 0..2 {
+            let step = b[axis] - a[axis];
+            let [enters, leaves] = [0, 1].map(|end| (room[axis][end] - a[axis]) / step);
+            if step == 0.0 {
+                let inside = (room[axis][0]..=room[axis][1]).contains(&a[axis]);
+                last = if inside { last } else { -1.0 };
+            } else {
+                first = first.max(enters.min(leaves));
+                last = last.min(enters.max(leaves));
+            }
+        }
+        if first > last || !(first + last).is_finite() {
+            continue;
+        }
+        let at = |part: f64| std::array::from_fn(|axis| from(axis, a[axis] + part * (b[axis] - a[axis])));
+        let start = if first == 0.0 { pair[0] } else { at(first) };
+        if line.last() != Some(&start) {
+            if !line.is_empty() {
+                line.push([f64::NAN; 2]);
+            }
+            line.push(start);
+        }
+        line.push(if last == 1.0 { pair[1] } else { at(last) });
+    }
+    line
 }
 
 fn label(axis: &Axis) -> String {
@@ -123,6 +172,10 @@ fn layer_source(source: &mut String, data: &mut Data, layer: &Layer, stem: &str)
     }
 }
 
+fn number(value: f64) -> String {
+    if value.is_finite() { format!("{value:e}") } else { "nan".into() }
+}
+
 /// Columns of unequal length side by side.
 #[derive(Default)]
 struct Data {
@@ -150,11 +203,31 @@ impl Data {
         let mut text = format!("{}\n", names.join(" "));
         let height = self.columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
         for row in 0..height {
-            let value =
-                |values: &Vec<f64>| values.get(row).map_or("nan".to_owned(), |value| format!("{value:e}"));
+            let value = |values: &Vec<f64>| values.get(row).map_or("nan".to_owned(), |value| number(*value));
             let values: Vec<String> = self.columns.iter().map(|(_, values)| value(values)).collect();
             let _ = writeln!(text, "{}", values.join(" "));
         }
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::cut;
+    use crate::record::Axis;
+    use crate::report::figure::{Figure, Layer, Point};
+
+    #[test]
+    fn lines_end_where_tex_would_lose_count() {
+        let axis = |log| Axis { name: "x".into(), unit: "1".into(), log };
+        let mut figure = Figure::new("id", "title", axis(true), axis(true));
+        let points = [(1.0, 1.0), (10.0, 10.0)].map(|(x, y)| Point { x, y, error: None });
+        figure.layers.push(Layer::points("p", 1, points.to_vec()));
+        let line = cut(&[[1.0, 1.0], [10.0, 1e40]], &figure);
+        assert_eq!(line[0], [1.0, 1.0]);
+        assert!(line[1][1] > 10.0 && line[1][1] < 1e3 && line[1][0] < 2.0, "{line:?}");
+        assert!(cut(&[[1.0, 1e30], [10.0, 1e30]], &figure).is_empty());
+        let back = cut(&[[1.0, 1.0], [2.0, 1e30], [4.0, 1.0], [10.0, 1.0]], &figure);
+        assert_eq!(back.iter().filter(|point| point[0].is_nan()).count(), 1, "{back:?}");
     }
 }
