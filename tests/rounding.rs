@@ -57,21 +57,19 @@ proptest! {
     }
 }
 
-/// In twice the digits the error is that of the value as computed: 1e-12 of it added by hand is found again.
 #[test]
 fn a_loss_is_seen() {
     let cloud = cloud(0.3, 5, 1.0);
     let kernel = by_id("wendland-c2").unwrap();
     let found = rounding(&operator("F4"), &kernel, &cloud, 24, &field(&cloud, 0.0)).unwrap();
     assert!(found.lost < 2.0, "{found:?}");
-    // F2 does not vanish on constants: the constant costs what it costs, and that is foretold.
-    let lossy = rounding(&operator("F2"), &kernel, &cloud, 24, &field(&cloud, 1e9)).unwrap();
+    // F1 does not vanish on constants: what f32 keeps of them is seen.
+    let lossy = rounding(&operator("F1"), &kernel, &cloud, 24, &field(&cloud, 1e9)).unwrap();
     let single = lossy.single.unwrap();
     assert!((2.0..8.0).contains(&single), "{single} digits in f32");
     assert!(lossy.predicted > lossy.lost, "{lossy:?}");
 }
 
-/// Planted: with `take_differences` taken out of `Program::new`, each of these loses ten digits and more.
 #[test]
 fn a_constant_costs_no_digits_where_it_vanishes() {
     let cloud = cloud(0.3, 5, 1.0);
@@ -79,7 +77,7 @@ fn a_constant_costs_no_digits_where_it_vanishes() {
     let cloud = cloud.with_field("density", vec![1.25; count]).unwrap();
     let cloud = cloud.with_field("mass", vec![1.25; count]).unwrap();
     let kernel = by_id("wendland-c2").unwrap();
-    for id in ["shepard-gradient", "shepard-hessian", "mixed-correction", "pressure-reduction", "F3", "S4"] {
+    for id in ["shepard-gradient", "shepard-hessian", "mixed-correction", "pressure-reduction", "F2", "S4"] {
         let found = rounding(&operator(id), &kernel, &cloud, 24, &field(&cloud, 1e12)).unwrap();
         assert!(found.lost < 3.0, "{id} loses {} digits", found.lost);
     }

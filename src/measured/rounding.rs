@@ -2,6 +2,7 @@
 //! digits on the same data.
 
 use super::bounded::{Bounded, UNIT};
+use super::constants::vanishes_on_constants;
 use super::double_double::Dd;
 use super::program::{Fields, Program, ProgramError};
 use super::stencil::{Applied, StencilError, value};
@@ -70,9 +71,20 @@ pub fn rounding(
     let program = Program::new(operator, kernel, cloud.dimension())?;
     let lists = Lists::of(&program, cloud, i)?;
     let computed = lists.apply(&program, operator.field, cloud, field)?;
-    let bounded = on_ground(operator, kernel, cloud, &lists, i, field, Bounded::exactly)?;
-    let exact = on_ground(operator, kernel, cloud, &lists, i, field, Dd::from)?;
-    let single = on_ground(operator, kernel, cloud, &lists, i, field, |x| x as f32).ok();
+    let numbers = |p: usize| field[p].iter().copied();
+    // The bound is on what is computed: differences, where constants do not matter.
+    let differences = vanishes_on_constants(operator, cloud.dimension());
+    let bounded = on_ground(operator, kernel, cloud, &lists, i, Bounded::exactly, &|p| {
+        let own = numbers(p).map(Bounded::exactly);
+        let less = numbers(i).map(|u| Bounded::exactly(if differences { u } else { 0.0 }));
+        own.zip(less).map(|(u, less)| u - less).collect()
+    })?;
+    let exact =
+        on_ground(operator, kernel, cloud, &lists, i, Dd::from, &|p| numbers(p).map(Dd::from).collect())?;
+    let as_single = |x: f64| x as f32;
+    let single =
+        on_ground(operator, kernel, cloud, &lists, i, as_single, &|p| numbers(p).map(as_single).collect())
+            .ok();
     let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
     let size = largest(&mut exact.components.iter().map(|x| x.to_f64()));
     let digits = |error: f64| if error == 0.0 { 0.0 } else { libm::log10(error / (UNIT * size)).max(0.0) };
@@ -153,12 +165,11 @@ fn on_ground<T: Number>(
     cloud: &Cloud,
     lists: &Lists,
     i: usize,
-    field: &[[f64; 3]],
     number: impl Fn(f64) -> T,
+    values: &dyn Fn(usize) -> Vec<T>,
 ) -> Result<Applied<T>, RoundingError> {
     let ground = Plain::new(kernel, cloud, lists, &number)?;
-    let values = |p: usize| field[p].iter().map(|x| number(*x)).collect();
-    Ok(value(operator, &ground, i, &values)?)
+    Ok(value(operator, &ground, i, values)?)
 }
 
 /// κ in the spectral norm.
