@@ -26,6 +26,9 @@ use std::time::Instant;
 /// Significant digits: operators differ in their last ones from one processor to another where libraries do.
 const DIGITS: usize = 6;
 
+/// Operators drawn beside a front.
+const MOST_LINES: usize = 4;
+
 /// Runs of which the median is timed.
 const TIMED: usize = 5;
 
@@ -444,15 +447,13 @@ impl Survey for Fronts {
                 let xy =
                     |points: &[&Point]| points.iter().map(|p| vec![cost(p), p.error_measured]).collect_vec();
                 let mut lines = vec![Line { name: "front".into(), points: xy(&on_front) }];
-                for (operator, own) in &own
-                    .iter()
-                    .copied()
-                    .into_group_map_by(|point| point.operator.clone())
-                    .into_iter()
-                    .sorted_by(|a, b| a.0.cmp(&b.0))
-                    .collect_vec()
-                {
-                    lines.push(Line { name: operator.clone(), points: xy(own) });
+                // Along R/Δ with the first kernel, those that come up on the front, the most accurate first.
+                let drawn = on_front.iter().rev().map(|point| point.operator.as_str()).unique();
+                for operator in drawn.take(MOST_LINES) {
+                    let along =
+                        own.iter().filter(|p| p.operator == operator && p.kernel == self.kernels[0].id());
+                    let name = format!("{operator}, {}", self.kernels[0].id());
+                    lines.push(Line { name, points: xy(&along.copied().collect_vec()) });
                 }
                 let name = by.replace('_', " ");
                 report.series.push(Series {
@@ -502,7 +503,10 @@ impl Survey for Fronts {
                 "operator": operator, "kernel": kernel, "support_over_dx": support, "why": why,
             }))),
         });
-        report.tables.insert("without_value".into(), without.collect());
+        let without = without.collect_vec();
+        if !without.is_empty() {
+            report.tables.insert("without_value".into(), without);
+        }
         Ok(())
     }
 
