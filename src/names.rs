@@ -15,8 +15,8 @@ pub fn nearest(given: &str, known: &[&str]) -> Option<String> {
 ///
 /// # Examples
 /// ```
-/// let known = ["cubic-spline", "quintic-spline", "wendland-c2"];
-/// assert_eq!(remainder::names::nearest_few("quintic-splin", &known, 2), ["quintic-spline", "cubic-spline"]);
+/// let known = ["cubic-spline", "wendland-c2", "wendland-c4"];
+/// assert_eq!(remainder::names::nearest_few("wendland-c3", &known, 2), ["wendland-c2", "wendland-c4"]);
 /// ```
 pub fn nearest_few(given: &str, known: &[&str], most: usize) -> Vec<String> {
     let mut found: Vec<(f64, &str)> = alike(given, known).collect();
