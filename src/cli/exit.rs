@@ -1,7 +1,7 @@
 //! Exit codes that scripts can use, and what led to them.
 
 use crate::language::LanguageError;
-use crate::report::{ReadError, Report, Verdict, WriteError, html};
+use crate::report::{ReadError, Report, Verdict, WriteError};
 use crate::study::{SceneError, StudyError};
 use thiserror::Error;
 
@@ -58,8 +58,6 @@ pub(super) enum Failure {
     Write(#[from] WriteError),
     #[error(transparent)]
     Read(#[from] ReadError),
-    #[error(transparent)]
-    Page(#[from] html::ReadError),
     #[error("{1}")]
     Operator(String, LanguageError),
     #[error("{0}")]

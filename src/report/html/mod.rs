@@ -15,7 +15,7 @@ mod verdicts;
 mod write;
 
 pub use index::{IndexEntry, index_page};
-pub use write::{Placed, ReadError, read_report, write_pages};
+pub use write::{Placed, read_report, write_pages};
 
 use super::figure::{Figure, Ladder, drawings, exponents, ladders, overviews};
 use super::rich::escaped;

@@ -2,34 +2,12 @@
 
 use super::index::{IndexEntry, index_page};
 use super::{Links, page, shell};
-use crate::record::{Report, SCHEMA};
+use crate::record::Report;
 use crate::report::WriteError;
+use crate::report::read::{self, ReadError};
 use crate::study::write_whole;
 use std::fs;
 use std::path::{Path, PathBuf};
-use thiserror::Error;
-
-/// What can go wrong when a report is read.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum ReadError {
-    /// The file system refused.
-    #[error("cannot read {}: {source}; name a folder with report.json, or a folder of such folders", path.display())]
-    File {
-        /// The file or folder.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// It is no report.
-    #[error("{} is no {SCHEMA}: {what}", path.display())]
-    Foreign {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        what: String,
-    },
-}
 
 /// A report and the folder that it was read from.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,19 +26,14 @@ impl Placed {
     }
 }
 
-/// Reads `report.json` of a folder, or the file itself.
+/// Reads a report, and keeps where it lies.
 ///
 /// # Errors
-/// [`ReadError::File`], [`ReadError::Foreign`].
+/// [`ReadError`].
 pub fn read_report(path: &Path) -> Result<Placed, ReadError> {
-    let file = if path.is_dir() { path.join("report.json") } else { path.to_owned() };
-    let bytes = fs::read(&file).map_err(|source| ReadError::File { path: file.clone(), source })?;
-    let foreign = |what: String| ReadError::Foreign { path: file.clone(), what };
-    let report: Report = serde_json::from_slice(&bytes).map_err(|error| foreign(error.to_string()))?;
-    if report.schema != SCHEMA {
-        return Err(foreign(format!("its schema is '{}'", report.schema)));
-    }
-    Ok(Placed { folder: file.parent().map_or_else(PathBuf::new, Path::to_owned), report })
+    let report = read::read_report(path)?;
+    let folder = if path.is_dir() { Some(path) } else { path.parent() };
+    Ok(Placed { folder: folder.map_or_else(PathBuf::new, Path::to_owned), report })
 }
 
 /// Writes `report.html` for each report, into its folder or into a folder of its name under `out`, and with `index` the
