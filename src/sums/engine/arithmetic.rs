@@ -4,7 +4,7 @@
 
 use super::lanes::Lanes;
 use super::radial::Radial;
-use super::reach::{Bounds, Reach};
+use super::reach::{Bounds, MANY, Reach};
 use super::request::{Factor, Pass, Plan, monomials, monomials_below};
 use super::sorted::Sorted;
 use super::vector::{Done, Table};
@@ -35,8 +35,7 @@ pub(super) struct Scratch {
     near: Table,
     /// Where the neighbours of each particle end.
     ends: [usize; BATCH],
-    /// The sums of each particle of a batch in lanes, and then added up.
-    lanes: Vec<[f64; LANES]>,
+    /// The sums of each particle of a batch.
     sums: Vec<f64>,
     /// Neighbours seen, i itself included.
     pub(super) pairs: u64,
@@ -47,7 +46,8 @@ impl Scratch {
         let mut near = Table::default();
         near.shape(dimension + 1 + plan.fields + 3, 2 * ENOUGH);
         let sums = BATCH * plan.sums;
-        Self { near, lanes: vec![[0.0; LANES]; sums], sums: vec![0.0; sums], ..Self::default() }
+        let reach = Reach::new(dimension + 1 + plan.fields);
+        Self { reach, near, sums: vec![0.0; sums], ..Self::default() }
     }
 
     /// The sums of one particle of the batch.
@@ -81,7 +81,12 @@ pub(super) fn block_of<L: Lanes, const D: usize>(
                 scratch.reach.aim(sorted, row, place, D, bounds);
             }
             let Scratch { reach, near, .. } = scratch;
-            let neighbours = reach.neighbours::<L, D>(sorted, plan, bounds, place, near, length);
+            let own = (place, sorted.rows[row].end as usize);
+            let neighbours = match plan.fields {
+                0 => reach.neighbours::<L, D, 0>(sorted, plan, bounds, own, near, length),
+                1 => reach.neighbours::<L, D, 1>(sorted, plan, bounds, own, near, length),
+                _ => reach.neighbours::<L, D, MANY>(sorted, plan, bounds, own, near, length),
+            };
             scratch.pairs += neighbours as u64;
             length += neighbours.next_multiple_of(LANES);
             scratch.ends[count] = length;
@@ -92,15 +97,6 @@ pub(super) fn block_of<L: Lanes, const D: usize>(
         for pass in &plan.passes {
             Space::<D>::take::<L>(plan, pass, count, scratch);
         }
-        for (lanes, sums) in
-            scratch.lanes.as_chunks::<LANES>().0.iter().zip(scratch.sums.as_chunks_mut::<LANES>().0)
-        {
-            let mut of = [L::splat(0.0); LANES];
-            for l in 0..LANES {
-                of[l] = L::load(&lanes[l]);
-            }
-            L::totals(of).store(sums);
-        }
         done(place - count, count, scratch);
     }
 }
@@ -108,22 +104,38 @@ pub(super) fn block_of<L: Lanes, const D: usize>(
 /// ω G_k of all neighbours of a batch.
 #[inline(always)]
 fn evaluate<L: Lanes, const D: usize>(task: &Task<'_>, near: &mut Table, length: usize) {
+    const STEP: usize = 4 * LANES;
+    let whole = length / STEP * STEP;
+    for at in (0..whole).step_by(STEP) {
+        evaluate_at::<L, D, 4>(task, near, at);
+    }
+    for at in (whole..length).step_by(LANES) {
+        evaluate_at::<L, D, 1>(task, near, at);
+    }
+}
+
+/// N times eight neighbours from place `at` on.
+#[inline(always)]
+fn evaluate_at<L: Lanes, const D: usize, const N: usize>(task: &Task<'_>, near: &mut Table, at: usize) {
     let (one, inverse_support) = (L::splat(1.0), L::splat(1.0 / task.support));
     let first = D + 1 + task.plan.fields;
     let wanted = task.plan.radials;
-    let mut near = near.view_mut();
-    for at in (0..length).step_by(LANES) {
+    let mut near = near.view_mut(first + 3);
+    let mut x = [one; N];
+    for n in 0..N {
         let mut square = L::splat(0.0);
         for a in 0..D {
-            let r = L::load(near.eight(a, at));
+            let r = L::load(near.eight(a, at + n * LANES));
             square = if a == 0 { r.mul(r) } else { square.add(r.mul(r)) };
         }
-        let x = square.sqrt().mul(inverse_support).min(one);
-        let weight = L::load(near.eight(D, at));
-        let g = task.radial.evaluate::<L>(x, &wanted);
-        for k in 0..3 {
-            if wanted[k] {
-                g[k].mul(weight).store(near.eight(first + k, at));
+        x[n] = square.sqrt().mul(inverse_support).min(one);
+    }
+    let g = task.radial.evaluate::<L, N>(x, &wanted);
+    for k in 0..3 {
+        if wanted[k] {
+            for n in 0..N {
+                let weight = L::load(near.eight(D, at + n * LANES));
+                g[k][n].mul(weight).store(near.eight(first + k, at + n * LANES));
             }
         }
     }
@@ -151,7 +163,8 @@ macro_rules! take {
             $($highest => {
                 const SUMS: usize = monomials_below($dimension, $highest + 1);
                 const PRODUCTS: usize = monomials($dimension, $highest);
-                up_to::<L, $dimension, $highest, SUMS, PRODUCTS>($plan, $pass, $count, $scratch)
+                const EIGHTS: usize = SUMS.div_ceil(LANES);
+                up_to::<L, $dimension, $highest, SUMS, PRODUCTS, EIGHTS>($plan, $pass, $count, $scratch)
             })*
             _ => {}
         }
@@ -175,13 +188,20 @@ macro_rules! degrees {
 }
 
 #[inline(always)]
-fn up_to<L: Lanes, const D: usize, const HIGHEST: usize, const SUMS: usize, const PRODUCTS: usize>(
+fn up_to<
+    L: Lanes,
+    const D: usize,
+    const HIGHEST: usize,
+    const SUMS: usize,
+    const PRODUCTS: usize,
+    const EIGHTS: usize,
+>(
     plan: &Plan,
     pass: &Pass,
     count: usize,
     scratch: &mut Scratch,
 ) {
-    let (near, degrees) = (scratch.near.view(), pass.degrees);
+    let (near, degrees) = (scratch.near.view(D + 4 + plan.fields), pass.degrees);
     let g_column = D + 1 + plan.fields + pass.radial;
     let mut at = 0;
     for (particle, end) in scratch.ends.iter().enumerate().take(count) {
@@ -207,13 +227,20 @@ fn up_to<L: Lanes, const D: usize, const HIGHEST: usize, const SUMS: usize, cons
             });
             at += LANES;
         }
-        let lanes = &mut scratch.lanes[particle * plan.sums..][..plan.sums];
+        let mut totals = [[0.0; LANES]; EIGHTS];
+        for eight in 0..EIGHTS {
+            let mut of = [L::splat(0.0); LANES];
+            for l in 0..LANES {
+                if eight * LANES + l < SUMS {
+                    of[l] = own[eight * LANES + l];
+                }
+            }
+            L::totals(of).store(&mut totals[eight]);
+        }
+        let sums = &mut scratch.sums[particle * plan.sums..][..plan.sums];
         degrees!(N <= HIGHEST => if degrees & (1 << N) != 0 {
             let (from, count) = const { (monomials_below(D, N), monomials(D, N)) };
-            let lanes = &mut lanes[pass.offsets[N]..][..count];
-            for a in 0..count {
-                own[from + a].store(&mut lanes[a]);
-            }
+            sums[pass.offsets[N]..][..count].copy_from_slice(&totals.as_flattened()[from..][..count]);
         });
     }
 }

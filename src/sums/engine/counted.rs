@@ -75,6 +75,10 @@ impl Lanes for Counted {
         Self(self.0.min(other.0))
     }
 
+    fn max(self, other: Self) -> Self {
+        Self(self.0.max(other.0))
+    }
+
     fn where_below(self, other: Self, yes: Self, no: Self) -> Self {
         Self(self.0.where_below(other.0, yes.0, no.0))
     }

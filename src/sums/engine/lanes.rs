@@ -17,6 +17,8 @@ pub(super) trait Lanes: Copy {
     fn sqrt(self) -> Self;
     /// The smaller; no argument may be NaN, and zeros of either sign are alike.
     fn min(self, other: Self) -> Self;
+    /// The larger, likewise.
+    fn max(self, other: Self) -> Self;
     /// `yes` where self < other, else `no`.
     fn where_below(self, other: Self, yes: Self, no: Self) -> Self;
     /// Bit l: self < other in lane l.
@@ -25,6 +27,18 @@ pub(super) trait Lanes: Copy {
     fn pack(self, inside: u8, to: &mut [f64; LANES]);
     /// Lane l: the lanes of `of[l]` added, ((0+4)+(2+6)) + ((1+5)+(3+7)).
     fn totals(of: [Self; LANES]) -> Self;
+}
+
+/// `f64::max` without its care for NaN, which costs.
+#[inline(always)]
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// `f64::min`, likewise.
+#[inline(always)]
+pub(super) fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 /// The portable path: eight numbers in an array.
@@ -84,6 +98,11 @@ impl Lanes for Portable {
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         each(|l| if self.0[l] < other.0[l] { self.0[l] } else { other.0[l] })
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        each(|l| if self.0[l] > other.0[l] { self.0[l] } else { other.0[l] })
     }
 
     #[inline(always)]

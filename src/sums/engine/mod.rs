@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | `request`    | which sums are wanted, and the fewest passes that give them |
 //! | `sorted`     | particles in rows of cells, sorted along each row, one column per quantity |
-//! | `reach`      | windows that slide along the rows around a particle, and the neighbours in them |
+//! | `reach`      | windows that slide along the rows, candidates, and the neighbours among them |
 //! | `radial`     | G_k in lanes |
 //! | `arithmetic` | a few particles at a time: neighbours, kernel, sums |
 //! | `lanes`      | eight f64, and what is done with them; the portable path |

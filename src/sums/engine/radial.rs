@@ -65,10 +65,11 @@ impl Radial {
     }
 
     /// Those G_k that are wanted, at 0 ≤ x ≤ 1. At x = 0, G_k is its limit where that is finite and 0 where it is not.
+    ///
+    /// N times eight places at once, as each step of a polynomial waits for the one before it.
     #[inline(always)]
-    pub(super) fn evaluate<L: Lanes>(&self, x: L, wanted: &[bool; 3]) -> [L; 3] {
-        let zero = L::splat(0.0);
-        let mut g = [zero; 3];
+    pub(super) fn evaluate<L: Lanes, const N: usize>(&self, x: [L; N], wanted: &[bool; 3]) -> [[L; N]; 3] {
+        let mut g = [[L::splat(0.0); N]; 3];
         match self {
             Self::Smooth { to, functions } => {
                 for k in 0..3 {
@@ -83,19 +84,23 @@ impl Radial {
                     for k in 0..3 {
                         if wanted[k] {
                             // A piece holds from its left end on, until the next one takes over.
-                            g[k] = x.where_below(from, g[k], piece.functions[k].at(piece.to, x));
+                            let values = piece.functions[k].at(piece.to, x);
+                            for n in 0..N {
+                                g[k][n] = x[n].where_below(from, g[k][n], values[n]);
+                            }
                         }
                     }
                 }
             }
             Self::Gaussian { rate, factors } => {
-                let mut values = [0.0; LANES];
-                x.store(&mut values);
-                let exponential = values.map(|x| libm::exp(-rate * x * x));
-                let exponential = L::load(&exponential);
-                for k in 0..3 {
-                    if wanted[k] {
-                        g[k] = L::splat(factors[k]).mul(exponential);
+                for n in 0..N {
+                    let mut values = [0.0; LANES];
+                    x[n].store(&mut values);
+                    let exponential = L::load(&values.map(|x| libm::exp(-rate * x * x)));
+                    for k in 0..3 {
+                        if wanted[k] {
+                            g[k][n] = L::splat(factors[k]).mul(exponential);
+                        }
                     }
                 }
             }
@@ -115,29 +120,38 @@ fn function((coefficients, inverse): &(Vec<f64>, usize), unit: f64) -> Function 
 
 impl Function {
     #[inline(always)]
-    fn polynomial<L: Lanes>(&self, to: f64, x: L) -> L {
-        let s = L::splat(to).sub(x);
+    fn polynomial<L: Lanes, const N: usize>(&self, to: f64, x: [L; N]) -> [L; N] {
+        let mut s = x;
+        for n in 0..N {
+            s[n] = L::splat(to).sub(x[n]);
+        }
         let mut coefficients = self.coefficients.iter();
-        let mut value = L::splat(coefficients.next().copied().unwrap_or(0.0));
+        let mut values = [L::splat(coefficients.next().copied().unwrap_or(0.0)); N];
         for coefficient in coefficients {
-            value = value.mul(s).add(L::splat(*coefficient));
+            for n in 0..N {
+                values[n] = values[n].mul(s[n]).add(L::splat(*coefficient));
+            }
         }
         for _ in 0..self.power {
-            value = value.mul(s);
+            for n in 0..N {
+                values[n] = values[n].mul(s[n]);
+            }
         }
-        value
+        values
     }
 
     #[inline(always)]
-    fn at<L: Lanes>(&self, to: f64, x: L) -> L {
-        let mut value = self.polynomial(to, x);
+    fn at<L: Lanes, const N: usize>(&self, to: f64, x: [L; N]) -> [L; N] {
+        let mut values = self.polynomial(to, x);
         if self.inverse > 0 {
             let zero = L::splat(0.0);
-            let inverse = zero.where_below(x, L::splat(1.0).div(x), zero);
-            for _ in 0..self.inverse {
-                value = value.mul(inverse);
+            for n in 0..N {
+                let inverse = zero.where_below(x[n], L::splat(1.0).div(x[n]), zero);
+                for _ in 0..self.inverse {
+                    values[n] = values[n].mul(inverse);
+                }
             }
         }
-        value
+        values
     }
 }

@@ -1,22 +1,23 @@
 //! Particles in rows of cells, sorted along each row, one column per quantity.
 //!
-//! The axes but the last are cut into cells of edge R/2; a cell of these is a row along the last axis. Only rows that hold
+//! The axes but the last are cut into cells of edge R; a cell of these is a row along the last axis. Only rows that hold
 //! particles are stored, so an outlier costs one row. In a row the particles stand in ascending order of the last
 //! coordinate, then of the others, weight and fields: the order in which they were given does not matter.
 //!
 //! Particles are dealt out to their rows first, each thread a part of them in the order given; then each row, which now
 //! stands together, is sorted by itself. So memory is never read here and there, whatever the order given.
 
+use super::lanes::{larger, smaller};
 use super::run::Points;
 use super::vector::{Table, shared};
 use rayon::prelude::*;
 use std::cmp::Ordering;
-use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Cells of a row on each side that may hold neighbours.
-const CELLS: u32 = 2;
+const CELLS: u32 = 1;
 
-/// How much wider than R/2 a cell is, against rounding of cell numbers up to [`MOST_CELLS`].
+/// How much wider than R a cell is, against rounding of cell numbers up to [`MOST_CELLS`].
 const MARGIN: f64 = 1.0 + 1.0 / 65536.0;
 
 /// Cell numbers end here; what lies beyond is in the last cell. Each error of a number is below 2^−20.
@@ -24,6 +25,9 @@ const MOST_CELLS: f64 = (1_u64 << 31) as f64;
 
 /// A row with more particles than this in one of its stretches is sorted by comparison.
 const CROWDED: u32 = 16;
+
+/// Particles dealt out together, quantity by quantity.
+const HAND: usize = 256;
 
 /// Particles of one task.
 const TASK: usize = 8192;
@@ -93,7 +97,7 @@ impl Grid {
 fn bounds(positions: &[[f64; 3]], axis: usize) -> (f64, f64) {
     let none = (f64::INFINITY, f64::NEG_INFINITY);
     let of = |positions: &[[f64; 3]]| {
-        positions.iter().fold(none, |(low, high), x| (low.min(x[axis]), high.max(x[axis])))
+        positions.iter().fold(none, |(low, high), x| (smaller(low, x[axis]), larger(high, x[axis])))
     };
     positions.par_chunks(TASK).map(of).reduce(|| none, |p, q| (p.0.min(q.0), p.1.max(q.1)))
 }
@@ -185,16 +189,26 @@ impl Sorted {
         // Each place is written once; atomics let the parts write side by side without a lock.
         let ((table, step), order) = (self.table.shared(), shared(&mut self.order));
         parts.zip(counts).enumerate().for_each(|(index, (positions, mut next))| {
-            for (particle, x) in (index * part..).zip(positions) {
-                let slot = &mut next[number(x)];
-                let place = *slot as usize;
-                *slot += 1;
-                let values = x[..dimension].iter().copied().chain([points.weights[particle]]);
-                let values = values.chain(points.fields.iter().map(|field| field[particle]));
-                for (column, value) in values.enumerate() {
-                    table[column * step + place].store(value.to_bits(), Relaxed);
+            let mut places = [0; HAND];
+            for (hand, positions) in positions.chunks(HAND).enumerate() {
+                let first = index * part + hand * HAND;
+                let particles = first..first + positions.len();
+                for (place, x) in places.iter_mut().zip(positions) {
+                    let slot = &mut next[number(x)];
+                    *place = *slot as usize;
+                    *slot += 1;
                 }
-                order[place].store(particle as u32, Relaxed);
+                let places = &places[..positions.len()];
+                for axis in 0..dimension {
+                    enter(&table[axis * step..][..step], places, positions.iter().map(|x| x[axis]));
+                }
+                let others = [points.weights].into_iter().chain(points.fields.iter().copied());
+                for (column, values) in (dimension..).zip(others) {
+                    enter(&table[column * step..][..step], places, values[particles.clone()].iter().copied());
+                }
+                for (place, particle) in places.iter().zip(particles) {
+                    order[*place].store(particle as u32, Relaxed);
+                }
             }
         });
     }
@@ -219,6 +233,14 @@ impl Sorted {
     /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
         self.table.bytes() + 4 * self.order.capacity() + self.rows.capacity() * size_of::<Row>()
+    }
+}
+
+/// Enters values into a column at these places.
+#[inline]
+fn enter(column: &[AtomicU64], places: &[usize], values: impl Iterator<Item = f64>) {
+    for (place, value) in places.iter().zip(values) {
+        column[*place].store(value.to_bits(), Relaxed);
     }
 }
 
@@ -267,8 +289,12 @@ impl Rows<'_> {
                 })
             };
             places.sort(columns[axis], compare);
-            for column in &mut columns {
-                permute(column, &places.sorted, &mut values);
+            for (index, column) in columns.iter_mut().enumerate() {
+                if index == axis {
+                    column.iter_mut().zip(&places.sorted).for_each(|(slot, (u, _))| *slot = *u);
+                } else {
+                    permute(column, &places.sorted, &mut values);
+                }
             }
             permute(&mut self.order[of_row], &places.sorted, &mut particles);
         }
@@ -285,7 +311,9 @@ fn permute<T: Copy>(values: &mut [T], places: &[(f64, u32)], copy: &mut Vec<T>) 
 
 /// The lowest and the highest number.
 fn ends(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), u| (low.min(*u), high.max(*u)))
+    values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), u| (smaller(low, *u), larger(high, *u)))
 }
 
 /// The places of a row's particles, sorted.

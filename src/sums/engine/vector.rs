@@ -5,8 +5,8 @@
 //! - **Instructions.** A [`Wide`] or a [`Pair`] is used only by `block_avx512` and `block_avx2`, which [`block`] calls after
 //!   the machine was asked for the features that these functions enable. Both types are private to this file. All of their
 //!   loads and stores go through references to eight numbers.
-//! - **Tables.** A [`Table`] keeps its columns [`LANES`] longer than `length`, and eight numbers are reached at a place of at
-//!   most `length` only. Its numbers can be seen as atomic ones while it is borrowed mutably.
+//! - **Tables.** A [`Table`] keeps its columns at least [`LANES`] longer than `length`, and eight numbers are reached at a place
+//!   of at most `length` only. It is made of lines of eight numbers, without gaps between them. Its numbers can be seen as atomic ones while it is borrowed mutably.
 //! - **Rows.** [`write_rows`] checks that `order` names each row of the result once and hands each stretch of it to one task.
 //!
 //! Only correctly rounded operations on single lanes are used, and none is fused.
@@ -82,71 +82,93 @@ pub(super) fn block<const D: usize>(
     }
 }
 
+/// Eight numbers in one line of the cache.
+#[derive(Debug, Clone, Copy, Default)]
+#[repr(C, align(64))]
+struct Line([f64; LANES]);
+
 /// Columns of one length, read and written eight numbers at a time: each has room for eight more behind its end.
 #[derive(Debug, Default)]
 pub(super) struct Table {
-    /// `columns` times `length` + [`LANES`] numbers.
-    values: Vec<f64>,
+    /// Column by column, each of `step` numbers.
+    lines: Vec<Line>,
     columns: usize,
     length: usize,
+    /// `length` up to the next multiple of eight, and eight more.
+    step: usize,
 }
 
 impl Table {
     /// Gives it this shape; what stands in it is anything.
     pub(super) fn shape(&mut self, columns: usize, length: usize) {
-        (self.columns, self.length) = (columns, length);
-        self.values.resize(columns * (length + LANES), 0.0);
+        let step = length.next_multiple_of(LANES) + LANES;
+        *self = Self { lines: std::mem::take(&mut self.lines), columns, length, step };
+        self.lines.resize(columns * step / LANES, Line::default());
     }
 
-    /// Twice as long, what stands in it kept.
+    /// Makes it at least as long as this, what stands in it kept.
+    #[inline(always)]
+    pub(super) fn reserve(&mut self, length: usize) {
+        if length > self.length {
+            self.grow(length);
+        }
+    }
+
     #[cold]
-    pub(super) fn grow(&mut self) {
+    fn grow(&mut self, length: usize) {
         let mut longer = Self::default();
-        longer.shape(self.columns, 2 * self.length + 64 * LANES);
-        for (to, from) in longer.columns().zip(self.values.chunks(self.length + LANES)) {
-            to[..self.length].copy_from_slice(&from[..self.length]);
+        longer.shape(self.columns, 2 * length);
+        for (to, from) in longer.columns().zip(self.columns()) {
+            to[..from.len()].copy_from_slice(from);
         }
         *self = longer;
     }
 
     /// Each column, with what is behind its end.
     pub(super) fn columns(&mut self) -> impl Iterator<Item = &mut [f64]> {
-        self.values.chunks_mut(self.length + LANES)
+        let numbers = self.lines.len() * LANES;
+        // SAFETY: a line is eight numbers, without gaps, and the borrow is a mutable one for as long.
+        let all = unsafe { std::slice::from_raw_parts_mut(self.lines.as_mut_ptr().cast(), numbers) };
+        all.chunks_mut(self.step.max(1))
     }
 
     /// One column, with what is behind its end.
     #[inline(always)]
     pub(super) fn column(&self, column: usize) -> &[f64] {
-        &self.values[column * (self.length + LANES)..][..self.length + LANES]
+        let lines = &self.lines[column * self.step / LANES..][..self.step / LANES];
+        // SAFETY: a line is eight numbers, without gaps; borrowed for as long.
+        unsafe { std::slice::from_raw_parts(lines.as_ptr().cast(), self.step) }
     }
 
     /// To read it eight by eight.
     #[inline(always)]
-    pub(super) fn view(&self) -> View<'_> {
-        let first = self.values.as_ptr();
-        View { first, length: self.length, columns: self.columns, of: PhantomData }
+    pub(super) fn view(&self, columns: usize) -> View<'_> {
+        assert!(columns <= self.columns, "no such columns");
+        let first = self.lines.as_ptr().cast();
+        View { first, length: self.length, step: self.step, columns, of: PhantomData }
     }
 
     /// To read and write it eight by eight.
     #[inline(always)]
-    pub(super) fn view_mut(&mut self) -> ViewMut<'_> {
-        let first = self.values.as_mut_ptr();
-        ViewMut { first, length: self.length, columns: self.columns, of: PhantomData }
+    pub(super) fn view_mut(&mut self, columns: usize) -> ViewMut<'_> {
+        assert!(columns <= self.columns, "no such columns");
+        let first = self.lines.as_mut_ptr().cast();
+        ViewMut { first, length: self.length, step: self.step, columns, of: PhantomData }
     }
 
     /// For several threads to write, each its own places: the bits of the numbers, column by column, and the step from one
     /// column to the next.
     pub(super) fn shared(&mut self) -> (&[AtomicU64], usize) {
-        let (length, step) = (self.values.len(), self.length + LANES);
-        // SAFETY: an AtomicU64 has the size and alignment of an f64 (both eight bytes on all machines that have it, as is
-        // asserted), all bits are valid for both, and the borrow is a mutable one for as long.
-        const { assert!(align_of::<AtomicU64>() == align_of::<f64>()) };
-        (unsafe { std::slice::from_raw_parts(self.values.as_mut_ptr().cast(), length) }, step)
+        let numbers = self.lines.len() * LANES;
+        // SAFETY: a line is eight numbers, without gaps; an AtomicU64 has the size of an f64, the alignment of a line is enough
+        // for it, as is asserted, all bits are valid for both, and the borrow is a mutable one for as long.
+        const { assert!(align_of::<AtomicU64>() <= align_of::<Line>()) };
+        (unsafe { std::slice::from_raw_parts(self.lines.as_mut_ptr().cast(), numbers) }, self.step)
     }
 
     /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
-        8 * self.values.capacity()
+        size_of::<Line>() * self.lines.capacity()
     }
 }
 
@@ -155,6 +177,7 @@ impl Table {
 pub(super) struct View<'a> {
     first: *const f64,
     length: usize,
+    step: usize,
     columns: usize,
     of: PhantomData<&'a Table>,
 }
@@ -165,7 +188,7 @@ impl<'a> View<'a> {
     pub(super) fn eight(self, column: usize, at: usize) -> &'a [f64; LANES] {
         assert!(column < self.columns && at <= self.length, "outside the table");
         // SAFETY: each column has LANES numbers from this place on; the table is borrowed.
-        unsafe { &*self.first.add(column * (self.length + LANES) + at).cast() }
+        unsafe { &*self.first.add(column * self.step + at).cast() }
     }
 }
 
@@ -173,23 +196,18 @@ impl<'a> View<'a> {
 pub(super) struct ViewMut<'a> {
     first: *mut f64,
     length: usize,
+    step: usize,
     columns: usize,
     of: PhantomData<&'a mut Table>,
 }
 
 impl ViewMut<'_> {
-    /// The length of a column.
-    #[inline(always)]
-    pub(super) fn length(&self) -> usize {
-        self.length
-    }
-
     /// Eight numbers of a column from place `at` on.
     #[inline(always)]
     pub(super) fn eight(&mut self, column: usize, at: usize) -> &mut [f64; LANES] {
         assert!(column < self.columns && at <= self.length, "outside the table");
         // SAFETY: each column has LANES numbers from this place on; the table is borrowed mutably, and so is this.
-        unsafe { &mut *self.first.add(column * (self.length + LANES) + at).cast() }
+        unsafe { &mut *self.first.add(column * self.step + at).cast() }
     }
 }
 
@@ -324,7 +342,7 @@ mod x86 {
 
     /// The operations lane by lane: of one register, for each of `$part`.
     macro_rules! lane_by_lane {
-        ($splat:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $sqrt:ident, $min:ident, $($part:tt),+) => {
+        ($splat:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $sqrt:ident, $min:ident, $max:ident, $($part:tt),+) => {
             #[inline(always)]
             fn splat(value: f64) -> Self {
                 intrinsics!(Self($({ let _ = $part; $splat(value) }),+))
@@ -359,6 +377,11 @@ mod x86 {
             fn min(self, other: Self) -> Self {
                 intrinsics!(Self($($min(self.$part, other.$part)),+))
             }
+
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                intrinsics!(Self($($max(self.$part, other.$part)),+))
+            }
         };
     }
 
@@ -371,6 +394,7 @@ mod x86 {
             _mm512_div_pd,
             _mm512_sqrt_pd,
             _mm512_min_pd,
+            _mm512_max_pd,
             0
         );
 
@@ -453,6 +477,7 @@ mod x86 {
             _mm256_div_pd,
             _mm256_sqrt_pd,
             _mm256_min_pd,
+            _mm256_max_pd,
             0,
             1
         );
