@@ -93,9 +93,6 @@ impl ViscosityPart {
             for support in &supports {
                 let chaussonnet = *support == 3.15;
                 for rule in VolumeRule::ALL {
-                    if rule == VolumeRule::Constant && !of_the_paper && !chaussonnet {
-                        continue;
-                    }
                     for regularised in [false, true] {
                         if !regularised && !of_the_paper && !chaussonnet {
                             continue;
@@ -476,13 +473,15 @@ impl ViscosityPart {
     }
 }
 
-/// The relative error of the effective viscosity of every model as printed, by kernel, lattice, Δ/h and direction.
+/// The relative error of the effective viscosity of every model as printed, by kernel, lattice, volume rule, Δ/h and
+/// direction.
 fn effective(all: &[Response]) -> Vec<super::super::Row> {
     #[derive(Serialize)]
     struct Effective<'a> {
         kernel: &'a str,
         lattice: &'a str,
         dimension: usize,
+        volume_rule: &'a str,
         dx_over_h: f64,
         support_over_dx: f64,
         direction: &'a str,
@@ -493,13 +492,13 @@ fn effective(all: &[Response]) -> Vec<super::super::Row> {
         d_4_24: f64,
         e: f64,
     }
-    let as_printed =
-        |r: &&Response| r.regularised && r.rule == VolumeRule::NumberDensity.id() && r.support != 3.15;
+    let as_printed = |r: &&Response| r.regularised && r.support != 3.15;
     let (mut rows, chosen): (Vec<_>, Vec<&Response>) = (Vec::new(), all.iter().filter(as_printed).collect());
     for first in chosen.iter().filter(|r| r.model == "A") {
         let of = |model: ViscousModel, sum: &str, constant: f64| {
             let found = chosen.iter().find(|r| {
                 r.model == sum
+                    && r.rule == first.rule
                     && (r.kernel == first.kernel && r.lattice == first.lattice)
                     && (r.support == first.support && r.direction == first.direction)
             });
@@ -511,6 +510,7 @@ fn effective(all: &[Response]) -> Vec<super::super::Row> {
             kernel: &first.kernel,
             lattice: &first.lattice,
             dimension: first.dimension,
+            volume_rule: &first.rule,
             dx_over_h: significant(first.dx_over_h, 6),
             support_over_dx: significant(first.support, 6),
             direction: &first.direction,

@@ -113,10 +113,11 @@ pub(super) fn works(table: &ChaussonnetTable, quick: bool) -> Vec<Work> {
             let etas = with_zero().filter(|eta| all || *eta == 0.0 || *eta == table.largest_eta());
             works.extend(etas.map(|eta| Work::Consistency { lattice, eta, h: *h }));
         }
-        for h in table.ladder(lattice) {
+        for (place, h) in table.ladder(lattice).iter().enumerate() {
             for eta in with_zero() {
                 for scale in &table.field_scales {
-                    if lattice == "square" || *scale == 1.0 {
+                    // Operators are linear: beside the lattice of the paper's fits, one h shows what K_x does.
+                    if lattice == "square" || *scale == 1.0 || place == 0 {
                         works.push(Work::Operators { lattice, eta, h: *h, scale: *scale });
                     }
                 }

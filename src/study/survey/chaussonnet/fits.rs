@@ -40,7 +40,8 @@ fn coefficients(found: &Results<'_>, report: &mut Report) -> Result<(), TaskErro
     let mut rows = Vec::new();
     for published in &FITS {
         let name = format!("{}/{}/x", published.operator, published.field);
-        let (points, derived_points) = (all_points(found, &name, true), all_points(found, &name, false));
+        let (points, derived_points) =
+            (all_points(found, "square", &name, true), all_points(found, "square", &name, false));
         if points.len() < 8 {
             continue;
         }
@@ -93,7 +94,7 @@ struct Window {
 /// G− on a linear field has a floor, the lattice's own B⁻¹ − I, and grows faster than η where η is large: which exponent a fit
 /// gives depends on where it begins.
 fn windows(found: &Results<'_>, report: &mut Report) -> Result<(), TaskError> {
-    let points = all_points(found, "G-/F1/x", true);
+    let points = all_points(found, "square", "G-/F1/x", true);
     let regular = found.model("square").map(|model| model.component("G-[1]", 0).regular);
     let mut rows = Vec::new();
     for from in &found.table.eta[..found.table.eta.len() - 1] {

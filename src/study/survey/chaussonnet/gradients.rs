@@ -216,34 +216,33 @@ fn constant(found: &Results<'_>, report: &mut Report) -> Result<(), TaskError> {
         let case = found.case(lattice, None, &[]);
         judge(report, "gradient/minus-constant", case, zero(0.0), zero(largest), Vec::new());
     }
-    for operator in GRADIENTS {
-        for field in 0..3 {
-            if operator == "G-" && field == 0 {
-                continue;
-            }
-            let name = format!("{operator}/F{field}/x");
-            // Every h and η, each with its own particles for every K_x.
-            let points: Vec<[f64; 4]> = all_points(found, &name, true);
-            let Some(observed) = scale_exponent(&points)? else { continue };
-            let case = found.case(
-                "square",
-                None,
-                &[("operator", text(operator)), ("field", text(format!("F{field}")))],
-            );
-            let derived = Some(Observed::Number(Measured::exactly(0.0)));
-            judge(report, "gradient/falls-with-scale", case, derived, Some(observed), Vec::new());
+    for (lattice, operator, field) in itertools::iproduct!(LATTICES, GRADIENTS, 0..3) {
+        if operator == "G-" && field == 0 {
+            continue;
         }
+        let name = format!("{operator}/F{field}/x");
+        // Every h and η, each with its own particles for every K_x.
+        let Some(observed) = scale_exponent(&all_points(found, lattice, &name, true))? else { continue };
+        let more = [("operator", text(operator)), ("field", text(format!("F{field}")))];
+        let case = found.case(lattice, None, &more);
+        let derived = Some(Observed::Number(Measured::exactly(0.0)));
+        judge(report, "gradient/falls-with-scale", case, derived, Some(observed), Vec::new());
     }
     Ok(())
 }
 
-/// [h, η, K_x, y] of all cases on the square lattice.
-pub(super) fn all_points(found: &Results<'_>, name: &str, measured: bool) -> Vec<[f64; 4]> {
+/// [h, η, K_x, y] of all cases on a lattice.
+pub(super) fn all_points(
+    found: &Results<'_>,
+    lattice: &'static str,
+    name: &str,
+    measured: bool,
+) -> Vec<[f64; 4]> {
     let mut points = Vec::new();
-    for h in found.table.ladder("square") {
+    for h in found.table.ladder(lattice) {
         for eta in &found.table.eta {
             for scale in &found.table.field_scales {
-                let at = At { lattice: "square", eta: *eta, h: *h, scale: *scale };
+                let at = At { lattice, eta: *eta, h: *h, scale: *scale };
                 let y = if measured { found.rms(at, name).map(|(y, _)| y) } else { found.derived(at, name) };
                 points.extend(y.filter(|y| *y > 0.0).map(|y| [*h, *eta, *scale, y]));
             }

@@ -143,11 +143,10 @@ fn linear(found: &Results<'_>, report: &mut Report) -> Result<(), TaskError> {
                 }
             }
         }
-        for field in ["U1", "U2"] {
-            let points = all_points(found, &format!("{operator}/{field}/x"), true);
+        for (lattice, field) in itertools::iproduct!(LATTICES, ["U1", "U2"]) {
+            let points = all_points(found, lattice, &format!("{operator}/{field}/x"), true);
             if let Some(observed) = scale_exponent(&points)? {
-                let case =
-                    found.case("square", None, &[("operator", text(operator)), ("field", text(field))]);
+                let case = found.case(lattice, None, &[("operator", text(operator)), ("field", text(field))]);
                 let derived = Some(Observed::Number(Measured::exactly(0.0)));
                 judge(report, "laplacian/falls-with-scale", case, derived, Some(observed), Vec::new());
             }
@@ -164,8 +163,9 @@ fn mean_ratio(
     other: &str,
     measured: bool,
 ) -> Result<Option<Observed>, TaskError> {
-    let all = all_points(found, name, true).len();
-    let (own, other) = (all_points(found, name, measured), all_points(found, other, measured));
+    let points = |name: &str, measured| all_points(found, "square", name, measured);
+    let all = points(name, true).len();
+    let (own, other) = (points(name, measured), points(other, measured));
     if own.is_empty() || own.len() != all || own.len() != other.len() {
         return Ok(None);
     }

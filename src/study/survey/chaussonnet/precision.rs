@@ -102,7 +102,7 @@ fn additive(found: &Results<'_>, report: &mut Report) -> Result<(), TaskError> {
     let mut rows = Vec::new();
     let laws: Vec<_> = FITS
         .iter()
-        .map(|fit| (fit, all_points(found, &format!("{}/{}/x", fit.operator, fit.field), false)))
+        .map(|fit| (fit, all_points(found, "square", &format!("{}/{}/x", fit.operator, fit.field), false)))
         .collect();
     if laws.iter().any(|(_, points)| points.len() < 8) {
         return Ok(());
