@@ -24,6 +24,15 @@
 //! | [`report`] | one record and its views |
 //! | [`cli`] | the command line |
 //!
+//! # Features
+//!
+//! | feature | what it adds |
+//! | --- | --- |
+//! | `cli` (on unless turned off) | [`cli`], the program `remainder`, and `views` |
+//! | `views` | pages, figures, LaTeX, CSV and JUnit of a report |
+//!
+//! Without them (`default-features = false`) everything up to [`study`] and the record itself remain.
+//!
 //! # Notation
 //!
 //! | symbol | meaning |
@@ -51,6 +60,7 @@
 //! ```
 
 pub mod claim;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod derived;
 pub mod evolve;

@@ -14,10 +14,16 @@ pub struct Paper {
     pub key: String,
     /// Family names of the authors.
     pub authors: Vec<String>,
+    /// Their names in full, `Family, Given`.
+    #[serde(skip)]
+    pub full_names: Vec<String>,
     /// Its title.
     pub title: String,
     /// Journal or proceedings.
     pub published_in: String,
+    /// Volume, number, place and pages, each empty where there is none.
+    #[serde(skip)]
+    pub found_at: [String; 4],
     /// Year.
     pub year: String,
     /// Digital object identifier, without a resolver.
@@ -52,9 +58,12 @@ pub fn literature() -> Result<Vec<Paper>, ParseError> {
         let rest = &SOURCE[entry.span.start..];
         let end = rest[entry.span.len()..].find('}').map_or(rest.len(), |brace| entry.span.len() + brace + 1);
         let doi = field(&["doi"]);
+        let people = found.author().unwrap_or_default();
         Some(Paper {
             key: entry.v.key.v.to_owned(),
-            authors: found.author().unwrap_or_default().into_iter().map(|person| person.name).collect(),
+            full_names: people.iter().map(|p| format!("{}, {}", p.name, p.given_name)).collect(),
+            found_at: [&["volume"][..], &["number"], &["location", "address"], &["pages"]].map(field),
+            authors: people.into_iter().map(|person| person.name).collect(),
             title: field(&["title"]),
             published_in: field(&["journaltitle", "journal", "booktitle"]),
             year: field(&["year", "date"]),

@@ -36,7 +36,13 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
     let cancel = Arc::new(AtomicBool::new(false));
     let asked = Arc::clone(&cancel);
     // The handler can be set once per process; where a caller has set one, theirs stays.
-    let _ = ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed));
+    let _ = ctrlc::set_handler(move || {
+        // What is finished is stored by then, each file whole.
+        if asked.swap(true, Ordering::Relaxed) {
+            std::process::exit(Exit::Interrupted.code().into());
+        }
+        eprintln!("\nstopping after the work in hand; once more stops at once (what is finished is stored)");
+    });
     let progress = Progress::new();
     let options = RunOptions {
         store: BlockStore::new(&arguments.store, arguments.from.clone()),

@@ -35,5 +35,9 @@ fn template(kind: SceneKind) -> &'static str {
         SceneKind::OperatorOrders => include_str!("scenes/operator-orders.toml"),
         SceneKind::Heat => include_str!("scenes/heat.toml"),
         SceneKind::Stiff => include_str!("scenes/stiff.toml"),
+        SceneKind::WorkPrecision => include_str!("scenes/work-precision.toml"),
+        SceneKind::Extremes => include_str!("scenes/extremes.toml"),
+        SceneKind::Basa => include_str!("scenes/basa.toml"),
+        SceneKind::Chaussonnet => include_str!("scenes/chaussonnet.toml"),
     }
 }

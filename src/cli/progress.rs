@@ -23,6 +23,8 @@ struct State {
     tenths: u64,
     seconds: BTreeMap<String, f64>,
     timed: serde_json::Value,
+    /// What was finished last, and what it found.
+    last: String,
 }
 
 impl Progress {
@@ -54,18 +56,21 @@ impl Progress {
                 self.bar.inc(cost);
             }
             Event::Timed(value) => state.timed = value,
-            Event::Finished { label, seconds, spared } => {
+            Event::Finished { label, seconds, spared, found } => {
                 state.done = state.done.saturating_add(spared);
                 state.finished += 1;
                 self.bar.inc(spared);
-                self.bar.set_message(format!("{}/{} {label}", state.finished, state.tasks));
+                let found = found.map(|found| format!(": {found}")).unwrap_or_default();
+                state.last = format!("{label}{found}");
+                self.bar.set_message(format!("{}/{} {}", state.finished, state.tasks, state.last));
                 *state.seconds.entry(label).or_default() += seconds;
             }
         }
         let tenths = state.done.saturating_mul(10).checked_div(state.cost).unwrap_or(10);
         if !self.interactive && tenths > state.tenths {
             state.tenths = tenths;
-            eprintln!("{} of {} tasks, {} % of the work", state.finished, state.tasks, tenths * 10);
+            let last = if state.last.is_empty() { String::new() } else { format!("; {}", state.last) };
+            eprintln!("{} of {} tasks, {} % of the work{last}", state.finished, state.tasks, tenths * 10);
         }
     }
 

@@ -8,7 +8,7 @@ pub(super) struct NewArguments {
     /// Name of the analysis: analyses/NAME/scene.toml is written
     #[arg(default_value = "mine")]
     pub(super) name: String,
-    /// What it studies; the set-ups of the papers are in analyses/ of the repository
+    /// What it studies
     #[arg(long, value_enum, default_value = "moment-orders")]
     pub(super) kind: SceneKind,
 }
@@ -24,6 +24,14 @@ pub(super) enum SceneKind {
     Heat,
     /// Spectra of assembled Laplacians
     Stiff,
+    /// Error against cost, operator by operator
+    WorkPrecision,
+    /// Digits lost in extreme cases
+    Extremes,
+    /// Viscous models, corrections and walls, as Basa et al.
+    Basa,
+    /// Consistency, gradients and Laplacians on disordered particles, as Chaussonnet et al.
+    Chaussonnet,
 }
 
 #[derive(Debug, Args)]

@@ -2,13 +2,18 @@
 
 mod advise;
 mod assemble;
+#[cfg(feature = "views")]
 mod csv;
 mod diff;
 mod expansion;
 mod explain;
+#[cfg(feature = "views")]
 pub mod figure;
+#[cfg(feature = "views")]
 pub mod html;
+#[cfg(feature = "views")]
 mod junit;
+#[cfg(feature = "views")]
 mod latex;
 mod layout;
 mod markdown;
@@ -16,8 +21,10 @@ mod numbers;
 mod orders;
 mod printed;
 mod read;
+#[cfg(feature = "views")]
 mod rich;
 mod rms;
+#[cfg(feature = "views")]
 pub mod svg;
 mod symbol;
 mod table;
@@ -26,13 +33,16 @@ mod write;
 pub use crate::record::*;
 pub use advise::advice_text;
 pub use assemble::assemble;
+#[cfg(feature = "views")]
 pub use csv::{csv_files, file_names};
 pub use diff::{Difference, ListChange, Place, ValueChange, VerdictChange, difference_text};
 pub use expansion::{
     ConservationReport, ExpansionReport, OrderReport, TermReport, Vanishes, expansion_report,
 };
 pub use explain::{Evidence, Story, UnknownClaim, stories};
+#[cfg(feature = "views")]
 pub use junit::junit;
+#[cfg(feature = "views")]
 pub use latex::{LatexError, latex_files, latex_shared};
 pub use layout::to_json;
 pub use markdown::markdown;

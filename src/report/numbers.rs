@@ -1,6 +1,6 @@
 //! Every number that a claim's columns hold, by name: what CSV lists and what two reports are compared by.
 
-use crate::record::{ClaimEntry, Column, Estimate, Source};
+use crate::record::{ClaimEntry, Column, Estimate};
 
 /// One statement of a column.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,7 +28,9 @@ pub(super) enum Held<'a> {
 
 impl Held<'_> {
     /// Where the number comes from, as the record writes it.
+    #[cfg(feature = "views")]
     pub(super) fn by(&self) -> &'static str {
+        use crate::record::Source;
         let Self::Estimate(Estimate { by: Some(by), .. }) = self else { return "" };
         match by {
             Source::Print => "print",

@@ -28,5 +28,7 @@ pub enum Event {
         seconds: f64,
         /// Work that turned out not to be needed, in pairs.
         spared: u64,
+        /// What it found, in a few words.
+        found: Option<String>,
     },
 }

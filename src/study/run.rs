@@ -7,7 +7,7 @@ use super::outcome::Outcome;
 use super::plan::{Omission, Plan, Task, sample_pairs};
 use super::scene::Scene;
 use super::store::BlockStore;
-use crate::measured::{RegularRung, RegularSpec, SampleBlock, Sampler, is_precise, regular_rung};
+use crate::measured::{RegularRung, RegularSpec, SampleBlock, SampleSpec, Sampler, is_precise, regular_rung};
 use crate::particles::PointGroup;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -120,16 +120,33 @@ fn is_rung_of(rung: &RegularRung, spec: &RegularSpec) -> bool {
         && rung.norms.iter().all(|norms| norms.len() == spec.subjects.len())
 }
 
+/// What a rung found of its first subject, at its largest R/Δ.
+fn found_regular(spec: &RegularSpec, rung: &RegularRung) -> Option<String> {
+    let (subject, support) = (spec.subjects.first()?, rung.supports.last()?);
+    let norm = rung.norms.last()?.first()?;
+    Some(format!("{} is off by {:.1e} at R/Δ = {support}", subject.name(), norm.deviation))
+}
+
+/// What samples found of their first subject.
+fn found_samples(spec: &SampleSpec, blocks: &[SampleBlock]) -> Option<String> {
+    let subject = spec.subjects.first()?;
+    let square: f64 = blocks.iter().filter_map(|block| block.moments.first()).map(|m| m.sum_square).sum();
+    let count: u64 = blocks.iter().map(|block| block.samples - block.degenerate).sum();
+    let rms = (square / count as f64).sqrt();
+    rms.is_finite().then(|| format!("{} varies by {rms:.1e}, {count} samples", subject.name()))
+}
+
 /// All blocks of a task; `None` if some are missing and nothing may be computed.
 fn run_task(scene: &Scene, task: &Task, options: &RunOptions<'_>) -> Result<Option<TaskResult>, StudyError> {
     let started = Instant::now();
     let key = task.key();
     let advanced = |cost: u64, stored: bool| (options.events)(Event::Advanced { cost, stored });
-    let finished = |spared: u64| {
+    let finished = |spared: u64, found: Option<String>| {
         (options.events)(Event::Finished {
             label: task.label(),
             seconds: started.elapsed().as_secs_f64(),
             spared,
+            found,
         });
     };
     let stop_if_asked =
@@ -151,7 +168,7 @@ fn run_task(scene: &Scene, task: &Task, options: &RunOptions<'_>) -> Result<Opti
                 }
             };
             advanced(task.cost(scene), was_stored);
-            finished(0);
+            finished(0, found_regular(spec, &rung));
             Ok(Some(TaskResult::Regular(rung)))
         }
         Task::Samples { spec, .. } => {
@@ -184,7 +201,8 @@ fn run_task(scene: &Scene, task: &Task, options: &RunOptions<'_>) -> Result<Opti
                 blocks.push(block);
                 advanced(size.saturating_mul(sample_pairs(spec)), was_stored);
             }
-            finished(((most - blocks.len() as u64) * size).saturating_mul(sample_pairs(spec)));
+            let spared = ((most - blocks.len() as u64) * size).saturating_mul(sample_pairs(spec));
+            finished(spared, found_samples(spec, &blocks));
             Ok(Some(TaskResult::Samples { blocks, floors: sampler.floors().to_vec() }))
         }
     }

@@ -90,3 +90,49 @@ fn an_interrupt_ends_with_130_and_keeps_the_blocks() {
     assert_eq!(all.len(), 1000);
     assert!(kept.iter().all(|(name, block)| all.get(name) == Some(block)));
 }
+
+#[test]
+fn a_second_interrupt_does_not_wait_for_the_task_in_hand() {
+    // A short task, whose block shows that the run has begun, and one of some 10⁹ time steps.
+    let run = |n: u32, integrator: &str| {
+        format!(
+            "[[survey.runs]]\nn = [{n}]\nh_over_dx = [2.5]\nschemes = [\"S3\"]\nepsilon = [0.0]\n\
+             integrators = [\"{integrator}\"]\n"
+        )
+    };
+    let folder = Folder::with_scene(&format!(
+        "[study]\nkind = \"heat\"\ntitle = \"long\"\nseed = 1\n[survey]\ncourant = 1e-7\n{}{}",
+        run(10, "exact"),
+        run(40, "euler")
+    ));
+    let mut child = start(&folder, "run small.toml --store store --out out --threads 2");
+    let interrupt = |child: &Child| {
+        let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
+        assert!(sent.success());
+    };
+    let mut stderr = child.stderr.take().expect("a pipe");
+    let mut said = [0; 1];
+    let mut text = String::new();
+    let patience = Instant::now();
+    while folder.blocks("store").is_empty() && patience.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    interrupt(&child);
+    while !text.contains("once more") && patience.elapsed() < Duration::from_secs(60) {
+        stderr.read_exact(&mut said).expect("a message");
+        text.push(char::from(said[0]));
+    }
+    assert!(child.try_wait().expect("a child").is_none(), "the first interrupt waits for the task in hand");
+    interrupt(&child);
+    let status = loop {
+        if let Some(status) = child.try_wait().expect("a child") {
+            break status;
+        }
+        if patience.elapsed() > Duration::from_secs(120) {
+            child.kill().expect("a kill");
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    };
+    assert_eq!(status.code(), Some(130), "{text}");
+    assert!(!folder.path("out").exists());
+}

@@ -1,82 +1,36 @@
-//! Citations from `references.bib`.
+//! Citations in HTML.
 
 use super::text::rich;
+use crate::claim::{Paper, literature};
 use crate::report::rich::escaped;
+use std::sync::LazyLock;
 
-/// The literature, as committed.
-const REFERENCES: &str = include_str!("../../../references.bib");
+static PAPERS: LazyLock<Vec<Paper>> = LazyLock::new(|| literature().unwrap_or_default());
 
-/// One entry.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Reference {
-    fields: Vec<(String, String)>,
+/// The paper of this key.
+pub(super) fn paper(key: &str) -> Option<&'static Paper> {
+    PAPERS.iter().find(|paper| paper.key == key)
 }
 
-impl Reference {
-    /// The entry of this key.
-    pub(super) fn by_key(key: &str) -> Option<Self> {
-        let entry = REFERENCES.split("\n@").find(|entry| {
-            entry.split_once('{').is_some_and(|(_, rest)| rest.trim_start().starts_with(&format!("{key},")))
-        })?;
-        let field = |line: &str| {
-            let (name, value) = line.split_once('=')?;
-            let value = value.trim().trim_end_matches(',');
-            Some((name.trim().to_owned(), plain(value)))
-        };
-        Some(Self { fields: entry.lines().skip(1).filter_map(field).collect() })
+/// The whole entry.
+pub(super) fn cited(paper: &Paper) -> String {
+    let [volume, number, address, pages] =
+        paper.found_at.each_ref().map(|text| escaped(&text.replace("--", "–")));
+    let mut place = escaped(&paper.published_in);
+    if !volume.is_empty() {
+        place += &format!(" {volume}");
     }
-
-    fn field(&self, name: &str) -> Option<&str> {
-        self.fields.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
+    if !number.is_empty() {
+        place += &format!(" ({number})");
     }
-
-    /// Authors and year, short.
-    pub(super) fn short(&self) -> String {
-        let authors = self.field("author").unwrap_or_default();
-        let families: Vec<&str> =
-            authors.split(" and ").map(|author| author.split(',').next().unwrap_or(author).trim()).collect();
-        let names = match families.as_slice() {
-            [one] => (*one).to_owned(),
-            [one, two] => format!("{one} & {two}"),
-            [one, ..] => format!("{one} et al."),
-            [] => String::new(),
-        };
-        format!("{names} ({})", self.field("year").unwrap_or_default())
-    }
-
-    /// The whole entry in HTML.
-    pub(super) fn html(&self) -> String {
-        let authors = self.field("author").unwrap_or_default().replace(" and ", "; ");
-        let mut parts = vec![
-            escaped(&authors),
-            format!("<cite>{}</cite>", rich(self.field("title").unwrap_or_default())),
-        ];
-        let mut place = escaped(self.field("journal").or(self.field("booktitle")).unwrap_or_default());
-        if let Some(volume) = self.field("volume") {
-            place += &format!(" {}", escaped(volume));
-        }
-        if let Some(number) = self.field("number") {
-            place += &format!(" ({})", escaped(number));
-        }
-        parts.push(place);
-        parts.extend(self.field("address").map(escaped));
-        parts.extend(self.field("pages").map(escaped));
-        parts.extend(self.field("year").map(escaped));
-        let text = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
-        let link = self.field("doi").map(|doi| {
-            let doi = escaped(doi);
-            format!(", <a href=\"https://doi.org/{doi}\">doi:{doi}</a>")
-        });
-        format!("{text}{}.", link.unwrap_or_default())
-    }
-}
-
-/// A BibTeX value as text: accents composed, braces gone.
-fn plain(value: &str) -> String {
-    let accents =
-        [("{\\\"o}", "ö"), ("{\\\"u}", "ü"), ("{\\\"a}", "ä"), ("{\\'e}", "é"), ("\\&", "&"), ("--", "–")];
-    let text = accents.iter().fold(value.to_owned(), |text, (from, to)| text.replace(from, to));
-    text.chars().filter(|c| !matches!(c, '{' | '}')).collect()
+    let title = format!("<cite>{}</cite>", rich(&paper.title));
+    let parts = [escaped(&paper.full_names.join("; ")), title, place, address, pages, escaped(&paper.year)];
+    let text = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
+    let link = paper.doi.as_ref().map(|doi| {
+        let doi = escaped(doi);
+        format!(", <a href=\"https://doi.org/{doi}\">doi:{doi}</a>")
+    });
+    format!("{text}{}.", link.unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -84,11 +38,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_papers_are_found() {
-        let paper = Reference::by_key("fatehi-manzari-2011").unwrap();
-        assert_eq!(paper.short(), "Fatehi & Manzari (2011)");
-        assert!(paper.html().contains("61 (2), 482–498, 2011"), "{}", paper.html());
-        assert_eq!(Reference::by_key("chaussonnet-2015").unwrap().short(), "Chaussonnet et al. (2015)");
-        assert!(Reference::by_key("scene").is_none());
+    fn the_papers_are_cited_whole() {
+        let fatehi = cited(paper("fatehi-manzari-2011").unwrap());
+        assert!(fatehi.starts_with("Fatehi, R.; Manzari, M. T., <cite>Error estimation"), "{fatehi}");
+        assert!(
+            fatehi.contains("61 (2), 482–498, 2011") && fatehi.contains("Computers &amp; Math"),
+            "{fatehi}"
+        );
+        let chaussonnet = cited(paper("chaussonnet-2015").unwrap());
+        assert!(
+            chaussonnet.contains("Bauer, Hans-Jörg") && chaussonnet.contains("of SPH operator"),
+            "{chaussonnet}"
+        );
+        assert!(paper("scene").is_none());
     }
 }

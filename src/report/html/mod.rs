@@ -21,7 +21,7 @@ use super::figure::{Figure, Ladder, drawings, exponents, ladders, overviews};
 use super::rich::escaped;
 use super::svg::{self, Size};
 use crate::record::Report;
-use citation::Reference;
+use citation::{cited, paper};
 use std::fmt::Write as _;
 use text::{number, rich};
 
@@ -179,9 +179,9 @@ fn references(body: &mut String, report: &Report) {
     }
     body.push_str("<section aria-labelledby=\"references\"><h2 id=\"references\">References</h2><ul>");
     for key in keys {
-        match Reference::by_key(key) {
-            Some(reference) => {
-                let _ = write!(body, "<li id=\"ref-{}\">{}</li>", escaped(key), reference.html());
+        match paper(key) {
+            Some(paper) => {
+                let _ = write!(body, "<li id=\"ref-{}\">{}</li>", escaped(key), cited(paper));
             }
             None => body.push_str("<li>Claims of the scene itself.</li>"),
         }

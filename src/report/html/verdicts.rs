@@ -1,7 +1,7 @@
 //! The verdict table: a row per claim that opens to its cases, a row per case that opens to its evidence.
 
 use super::Detail;
-use super::citation::Reference;
+use super::citation::paper;
 use super::column::{Which, cell, summary};
 use super::evidence::{Fitted, evidence};
 use super::math::order;
@@ -76,7 +76,7 @@ fn claim(
     );
     let _ = write!(page, "<div class=\"body\"><p>{}</p>", rich(&section.why));
     let source = entries.first().map(|entry| entry.citation.source.as_str()).unwrap_or_default();
-    let reference = Reference::by_key(source).map(|reference| escaped(&reference.short()));
+    let reference = paper(source).map(|paper| escaped(&paper.short()));
     let _ = write!(
         page,
         "<p class=\"small\">Claim <code>{}</code>, {}, {}.</p>",

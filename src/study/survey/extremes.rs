@@ -113,6 +113,15 @@ enum Situation {
 }
 
 impl Situation {
+    /// Whether neighbours of neighbours are too many.
+    fn is_large(self) -> bool {
+        match self {
+            Self::Support(support) => support > NESTED_UP_TO,
+            Self::Aspect(ratio) => ratio > 10.0,
+            _ => false,
+        }
+    }
+
     fn name(self) -> String {
         match self {
             Self::Support(support) => format!("R/Δ = {support}"),
@@ -523,25 +532,29 @@ impl Survey for Battery {
             .filter(|subject| subject.nested)
             .map(|subject| subject.name.as_str())
             .join(", ");
+        let large = self.situations.iter().filter(|situation| situation.is_large()).count();
+        let left = large * self.subjects.iter().filter(|subject| subject.nested).count();
         vec![Omission {
             what: format!(
                 "operators inside operators beyond R/Δ = {NESTED_UP_TO} and at aspect ratios above 10 ({nested})"
             ),
             why: "neighbours of neighbours are too many, and nothing new is seen there".into(),
-            saved: None,
+            saved: Some(format!("{left} of {} values", self.situations.len() * self.subjects.len())),
         }]
     }
 
     fn compute(&self, task: usize) -> Result<Value, TaskError> {
         let situation = self.situations[task];
-        let large = match situation {
-            Situation::Support(support) => support > NESTED_UP_TO,
-            Situation::Aspect(ratio) => ratio > 10.0,
-            _ => false,
-        };
+        let large = situation.is_large();
         let taken = self.subjects.iter().filter(|subject| !(large && subject.nested));
         let found: Vec<Found> = taken.map(|subject| self.found(situation, subject)).try_collect()?;
         Ok(serde_json::to_value(found)?)
+    }
+
+    fn found(&self, _task: usize, result: &Value) -> Option<String> {
+        let found: Vec<Found> = serde_json::from_value(result.clone()).ok()?;
+        let counts = found.iter().counts_by(|found| found.status.as_str()).into_iter().sorted();
+        Some(counts.map(|(status, count)| format!("{count} {status}")).join(", "))
     }
 
     fn report(&self, results: &[Value], report: &mut Report) -> Result<(), TaskError> {

@@ -53,6 +53,11 @@ pub trait Survey: Send + Sync {
     /// [`TaskError`]: what was wrong, where, and what to do.
     fn compute(&self, task: usize) -> Result<Value, TaskError>;
 
+    /// What a task found, in a few words, for those who wait.
+    fn found(&self, _task: usize, _result: &Value) -> Option<String> {
+        None
+    }
+
     /// Enters claims, fits, series and tables into the report; `results` are those of the tasks, in their order. Provenance,
     /// rolled verdicts and what was left out are entered by the runner.
     ///

@@ -100,7 +100,8 @@ fn run_task(
     };
     (options.events)(Event::Advanced { cost: task.cost, stored: was_stored });
     let seconds = started.elapsed().as_secs_f64();
-    (options.events)(Event::Finished { label: task.label.clone(), seconds, spared: 0 });
+    let found = scene.survey.found(index, &result);
+    (options.events)(Event::Finished { label: task.label.clone(), seconds, spared: 0, found });
     Ok(Some(result))
 }
 

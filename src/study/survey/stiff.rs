@@ -450,6 +450,20 @@ impl Survey for StiffSurvey {
         Ok(serde_json::to_value(found)?)
     }
 
+    fn found(&self, _task: usize, result: &Value) -> Option<String> {
+        Some(match serde_json::from_value(result.clone()).ok()? {
+            Found::Spectrum(row, _) => format!("ρΔ² = {:.3}, {} modes grow", row.radius_dx2, row.growing),
+            Found::Methods(rows) => {
+                let stopped = rows.iter().filter(|row| row.stopped.is_some()).count();
+                format!("{} runs, {stopped} stopped", rows.len())
+            }
+            Found::Layers(rows) => {
+                let error = rows.iter().filter_map(|row| row.steady_error).reduce(f64::min)?;
+                format!("off the steady solution by {error:.1e} at best")
+            }
+        })
+    }
+
     fn report(&self, results: &[Value], report: &mut Report) -> Result<(), TaskError> {
         let mut tables: BTreeMap<&str, Vec<Row>> = BTreeMap::new();
         let mut spectra = Vec::new();

@@ -419,6 +419,16 @@ impl Survey for Fronts {
         Ok(serde_json::to_value(points.collect::<Result<Vec<Found>, TaskError>>()?)?)
     }
 
+    fn found(&self, _task: usize, result: &Value) -> Option<String> {
+        let found: Vec<Found> = serde_json::from_value(result.clone()).ok()?;
+        let errors = found.iter().filter_map(|found| match found {
+            Found::Value(point, _) => Some((point.error_measured, point.support_over_dx)),
+            Found::None(..) => None,
+        });
+        let (error, support) = errors.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(format!("error {error:.1e} at best, at R/Δ = {support}"))
+    }
+
     fn report(&self, results: &[Value], report: &mut Report) -> Result<(), TaskError> {
         let all = Self::found(results)?;
         let points = all.iter().filter_map(|found| match found {

@@ -252,7 +252,8 @@ impl Part for ViscosityPart {
         let more = (&self.common.parameters.ladder, self.common.parameters.dx_over_h);
         let one = |kernel: &Kernel| {
             let profile = kernel.canonical_profile();
-            self.common.task(&format!("viscosity {}", kernel.id()), &(more, profile), 4_000_000)
+            let inputs = (more, profile, VolumeRule::ALL.map(VolumeRule::id));
+            self.common.task(&format!("viscosity {}", kernel.id()), &inputs, 4_000_000)
         };
         let mut tasks: Vec<SurveyTask> = self.kernels.iter().map(one).collect();
         let rows = self.common.parameters.rows;
