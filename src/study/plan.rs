@@ -19,7 +19,7 @@ use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 
 /// Changes whenever the same inputs may give other bits: blocks stored by another engine are not found.
-pub(super) const ENGINE: &str = "remainder-engine/1";
+pub(super) const ENGINE: &str = "remainder-engine/2";
 
 /// A unit of work whose results are stored block by block.
 #[derive(Debug, Clone)]

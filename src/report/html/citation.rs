@@ -47,7 +47,7 @@ mod tests {
         );
         let chaussonnet = cited(paper("chaussonnet-2015").unwrap());
         assert!(
-            chaussonnet.contains("Bauer, Hans-Jörg") && chaussonnet.contains("of SPH operator"),
+            chaussonnet.contains("Bauer, Hans-Jörg") && chaussonnet.contains("on SPH operator"),
             "{chaussonnet}"
         );
         assert!(paper("scene").is_none());
