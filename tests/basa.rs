@@ -6,6 +6,8 @@
 //! | `the_calibrated_constant_is_that_of_the_lattice` | a spline and loops written out here against `derived` |
 //! | `models_on_particles_give_what_was_derived` | `measured::Program` on placed particles against `derived` |
 //! | `model_e_is_a_component_of_b_inverse` | exact lattice sums (`sums`) against `derived` |
+//!
+//! Each failed on an error planted in what it tests.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use remainder::derived::{
