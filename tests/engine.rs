@@ -176,6 +176,40 @@ fn a_field_enters_by_its_differences() {
     }
 }
 
+/// Two of four fields, more than are written out when compiling.
+#[test]
+fn fields_enter_on_every_path_alike() {
+    let kernel = by_id("cubic-spline").unwrap();
+    for dimension in 1..=3 {
+        let cloud = cloud(dimension, 700, 6.0, 23);
+        let field = |step: f64| -> Vec<f64> { (0..700).map(|i| (f64::from(i) * step).fract()).collect() };
+        let fields = [0.31, 0.83, 0.57, 0.19].map(field);
+        let fields: Vec<&[f64]> = fields.iter().map(Vec::as_slice).collect();
+        let sum = |positions, factor| RadialSum { positions, radial: 1, factor };
+        let one = |number: usize| [sum(1, Factor::Difference(number)), sum(0, Factor::Difference(number))];
+        let of = |wanted: &[RadialSum], fields: &[&[f64]], path| {
+            let engine = Engine::for_radial_sums(&kernel, dimension, 0.8, wanted).unwrap();
+            let mut engine = engine.on_path(path);
+            let mut out = vec![0.0; 700 * engine.columns()];
+            engine.run(&cloud.points(fields), &mut out).unwrap();
+            out
+        };
+        let wanted = [one(0), one(2)].concat();
+        let reference = of(&wanted, &fields, Path::Portable);
+        for path in [Path::Avx2, Path::Avx512] {
+            assert_eq!(bits(&of(&wanted, &fields, path)), bits(&reference), "{dimension}-D {path:?}");
+        }
+        // Each by itself, as the only field of a run.
+        let width = dimension + 1;
+        for (place, number) in [0, 2].into_iter().enumerate() {
+            let alone = of(&one(0), &[fields[number]], Path::best());
+            for (row, own) in reference.chunks(2 * width).zip(alone.chunks(width)) {
+                assert_eq!(bits(&row[place * width..][..width]), bits(own), "{dimension}-D field {number}");
+            }
+        }
+    }
+}
+
 #[test]
 fn far_outliers_cost_neither_memory_nor_neighbours() {
     let moments = [Moment::default(), Moment::b_inverse()];

@@ -1,5 +1,6 @@
 //! Errors as rustc prints them: what, where in the scene, what to do.
 
+use super::execute::note;
 use super::exit::Failure;
 use crate::study::SceneError;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
@@ -15,7 +16,7 @@ pub(super) fn print(failure: &Failure) {
         }
         other => format!("error: {other}"),
     };
-    eprintln!("{text}");
+    note(&text);
 }
 
 fn scene(error: &SceneError) -> String {

@@ -12,7 +12,7 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, Failure> {
     let started = Instant::now();
@@ -34,15 +34,7 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
         .build()
         .map_err(|error| Failure::Arguments(format!("cannot start {threads} threads: {error}")))?;
     let cancel = Arc::new(AtomicBool::new(false));
-    let asked = Arc::clone(&cancel);
-    // The handler can be set once per process; where a caller has set one, theirs stays.
-    let _ = ctrlc::set_handler(move || {
-        // What is finished is stored by then, each file whole.
-        if asked.swap(true, Ordering::Relaxed) {
-            std::process::exit(Exit::Interrupted.code().into());
-        }
-        eprintln!("\nstopping after the work in hand; once more stops at once (what is finished is stored)");
-    });
+    stop_when_asked(&cancel);
     let progress = Progress::new();
     let options = RunOptions {
         store: BlockStore::new(&arguments.store, arguments.from.clone()),
@@ -61,7 +53,9 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
     let (seconds, stored, timed) = progress.finish();
     let Some(report) = report? else {
         let name = arguments.scene.display();
-        eprintln!("this shard's blocks are stored; when all are, `remainder merge {name}` writes the report");
+        note(&format!(
+            "this shard's blocks are stored; when all are, `remainder merge {name}` writes the report"
+        ));
         return Ok(Exit::AsExpected);
     };
     let mut timings = json!({
@@ -85,6 +79,31 @@ pub(super) fn run(arguments: &RunArguments, stored_only: bool) -> Result<Exit, F
         print_out(&format!("Written to {}.\n", out.display()));
     }
     Ok(Exit::of(&report))
+}
+
+/// Has an interrupt set `cancel`, and another one, later on, end the program at once.
+fn stop_when_asked(cancel: &Arc<AtomicBool>) {
+    /// What ends a program may send its signal to the process and to its group: that is one request.
+    const ONE_REQUEST: Duration = Duration::from_secs(1);
+    let cancel = Arc::clone(cancel);
+    let mut first = None;
+    // The handler can be set once per process; where a caller has set one, theirs stays.
+    let _ = ctrlc::set_handler(move || {
+        cancel.store(true, Ordering::Relaxed);
+        match first {
+            // What is finished is stored by then, each file whole.
+            Some(first) if Instant::elapsed(&first) > ONE_REQUEST => {
+                std::process::exit(Exit::Interrupted.code().into());
+            }
+            Some(_) => {}
+            None => {
+                first = Some(Instant::now());
+                note(
+                    "\nstopping after the work in hand; once more stops at once (what is finished is stored)",
+                );
+            }
+        }
+    });
 }
 
 pub(super) fn plan(arguments: &PlanArguments) -> Result<Exit, Failure> {
@@ -157,6 +176,12 @@ fn left_out(omissions: &[Omission]) -> String {
         text += &format!("  {}: {}{saved}\n", omission.what, omission.why);
     }
     text
+}
+
+/// Prints a line to standard error, whether or not anyone reads it.
+pub(super) fn note(line: &str) {
+    use std::io::Write as _;
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
 /// Prints to standard output; a reader that has gone away (a closed pipe) is no error of ours.

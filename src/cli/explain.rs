@@ -1,7 +1,7 @@
 //! `explain`: the story of a claim.
 
 use super::arguments::ExplainArguments;
-use super::execute::print_out;
+use super::execute::{note, print_out};
 use super::exit::{Exit, Failure};
 use super::terminal::fitted;
 use crate::report::{Report, read_report, stories, to_json};
@@ -47,7 +47,7 @@ fn reports(files: &[PathBuf], wanted: impl Fn(&str) -> bool) -> Vec<Report> {
         }
         match read_report(path) {
             Ok(report) => reports.push(report),
-            Err(error) => eprintln!("left out: {error}"),
+            Err(error) => note(&format!("left out: {error}")),
         }
     }
     reports

@@ -1,5 +1,6 @@
 //! Progress: bars on a terminal, a calm line now and then elsewhere.
 
+use super::execute::note;
 use crate::study::Event;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeMap;
@@ -70,7 +71,12 @@ impl Progress {
         if !self.interactive && tenths > state.tenths {
             state.tenths = tenths;
             let last = if state.last.is_empty() { String::new() } else { format!("; {}", state.last) };
-            eprintln!("{} of {} tasks, {} % of the work{last}", state.finished, state.tasks, tenths * 10);
+            note(&format!(
+                "{} of {} tasks, {} % of the work{last}",
+                state.finished,
+                state.tasks,
+                tenths * 10
+            ));
         }
     }
 

@@ -1,6 +1,7 @@
 //! The forms of a report that `run`, `merge` and `report` write where they are asked to.
 
 use super::arguments::ViewArguments;
+use super::execute::note;
 use super::exit::Failure;
 use super::files::write_file;
 use crate::report::{Report, csv_files, file_names, junit, latex_files, latex_shared};
@@ -42,7 +43,7 @@ pub(super) fn write(views: &ViewArguments, reports: &[Report]) -> Result<(), Fai
 
 /// On standard error: standard output may hold the record.
 fn said(path: &Path) {
-    eprintln!("Written to {}.", path.display());
+    note(&format!("Written to {}.", path.display()));
 }
 
 impl ViewArguments {

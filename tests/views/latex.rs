@@ -149,3 +149,26 @@ fn the_verdict_table_says_what_the_report_says() {
     assert!(data.starts_with("x1 y1") && lines.all(|line| line.split(' ').count() == width));
     assert!(folder.text("tex/fatehi-table-1/equations.tex").contains("Truncation error of F1"));
 }
+
+#[test]
+fn every_fit_has_its_row() {
+    let folder = written();
+    for name in ["fatehi-table-1", "fatehi-table-2", "chaussonnet-2015"] {
+        let table = folder.text(&format!("tex/{name}/fits.tex"));
+        let body = table.split_once("\\endlastfoot\n").expect("a table over pages").1;
+        let rows: Vec<&str> = body.lines().filter(|line| line.ends_with("\\\\")).collect();
+        let report = report(name);
+        let fits = list(&report["fits"]);
+        assert_eq!(rows.len(), fits.len(), "{name}");
+        for (row, fit) in rows.iter().zip(fits) {
+            let points = list(&fit["points"]);
+            let kept = points.iter().filter(|point| point["kept"] == true).count();
+            assert!(row.contains(&format!("& {kept} of {} ", points.len())), "{row}: {kept}");
+            let slope = fit["slope"]["value"].as_f64().expect("an exponent");
+            let printed =
+                row.split('&').nth(4).expect("eight cells").trim().parse::<f64>().expect("a number");
+            assert!((printed - slope).abs() < 1e-3 * (1.0 + slope.abs()), "{row}: {slope}");
+        }
+    }
+    assert!(!folder.path("tex/stiff/fits.tex").exists());
+}

@@ -70,8 +70,8 @@ fn what_is_commented_out_is_right_too() {
         }
         assert_ne!(opened.join("\n"), scene.trim_end(), "{kind}: nothing is commented out");
         folder.write("analyses/open/scene.toml", opened.join("\n"));
-        let ran = folder.run("plan analyses/open --quick");
-        assert_eq!(ran.code, 0, "{kind}: {}", ran.stderr);
+        let ran = folder.run("run analyses/open --quick");
+        assert_eq!(ran.code, 0, "{kind}: {}\n{}", ran.stdout, ran.stderr);
     }
 }
 

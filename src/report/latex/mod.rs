@@ -5,6 +5,7 @@
 //! | file | what it is |
 //! | --- | --- |
 //! | `summary.tex`, `verdicts.tex` | tables of the verdicts; published, derived and measured side by side |
+//! | `fits.tex` | fitted exponents with interval, residual deviation and points kept |
 //! | `table-NAME.tex`, `runs.tex`, … | the other tables, as far as a page holds them |
 //! | `equations.tex` | what is claimed, and the expansions of the operators that it is about |
 //! | `figures/ID.tex`, `figures/ID.dat` | a PGFPlots source and its data |

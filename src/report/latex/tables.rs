@@ -2,7 +2,7 @@
 
 use super::table::{Cell, Row, Table, Width};
 use super::text::{plain, tex};
-use crate::record::{ClaimEntry, Estimate, Number, Report};
+use crate::record::{ClaimEntry, Estimate, Fit, Number, Report};
 use crate::report::csv::file_names;
 use crate::report::numbers::{Held, Named, numbers};
 use crate::report::table::{Section, sections, short};
@@ -25,6 +25,7 @@ pub(super) fn tables(report: &Report) -> Vec<(String, String)> {
             found.push((name.to_owned(), text));
         }
     };
+    add("fits", (!report.fits.is_empty()).then(|| fits(report).long()));
     add("viscosity-constants", structs(&report.viscosity_constants));
     add("laplacian-factors", structs(&report.laplacian_factors));
     add("inferred-domain-size", structs(&report.inferred_domain_size));
@@ -97,6 +98,39 @@ fn verdicts(report: &Report, sections: &[Section]) -> Table {
         }
     }
     Table { heads, rows }
+}
+
+/// One row a fit: quantity ∝ x^exponent, the residual standard deviation of its logarithm, points kept of all.
+fn fits(report: &Report) -> Table {
+    let heads = vec![
+        natural("$D$"),
+        ("quantity".to_owned(), Width::Share(18)),
+        ("case".to_owned(), Width::Share(28)),
+        natural("against"),
+        natural("exponent"),
+        natural("95\\,\\%"),
+        natural("$s$"),
+        natural("points"),
+    ];
+    let row = |fit: &Fit| {
+        let case = &fit.case;
+        let named = [Some(&case.kernel), case.lattice.as_ref(), case.disorder.as_ref()];
+        let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        let more = case.more.values().map(text);
+        let words = named.into_iter().flatten().cloned().chain([case.volume_rule.clone()]).chain(more);
+        let kept = fit.points.iter().filter(|point| point.kept).count();
+        Row::Cells(vec![
+            Cell::Text(case.dimension.to_string()),
+            Cell::Text(tex(&fit.quantity)),
+            Cell::Text(tex(&words.collect::<Vec<_>>().join(", "))),
+            Cell::Text(tex(&fit.x.name)),
+            number(&fit.slope.value),
+            interval(&fit.slope),
+            float(fit.residual_sd),
+            Cell::Text(format!("{kept} of {}", fit.points.len())),
+        ])
+    };
+    Table { heads, rows: report.fits.iter().map(row).collect() }
 }
 
 /// Quantity, published, derived, measured, its interval.

@@ -458,8 +458,9 @@ impl Survey for StiffSurvey {
                 format!("{} runs, {stopped} stopped", rows.len())
             }
             Found::Layers(rows) => {
-                let error = rows.iter().filter_map(|row| row.steady_error).reduce(f64::min)?;
-                format!("off the steady solution by {error:.1e} at best")
+                let apart = rows.iter().filter_map(|row| row.from_steady).reduce(f64::min)?;
+                let failed = rows.iter().filter(|row| row.failed.is_some()).count();
+                format!("{} runs, {failed} failed, {apart:.1e} from the steady solution at best", rows.len())
             }
         })
     }

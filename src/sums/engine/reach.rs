@@ -105,7 +105,12 @@ impl Reach {
         at: usize,
     ) -> usize {
         if place >= self.until {
-            self.until = end.min(place + TOGETHER);
+            // Particles far from each other have no candidates in common.
+            let along = sorted.table.column(D - 1);
+            self.until = place + 1;
+            while self.until < end.min(place + TOGETHER) && along[self.until] - along[place] < bounds.reach {
+                self.until += 1;
+            }
             self.gather::<L, D, FIELDS>(sorted, plan, bounds, place);
         }
         let columns = columns::<D, FIELDS>(plan);

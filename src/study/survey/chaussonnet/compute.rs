@@ -148,7 +148,12 @@ impl Work {
         let (label, inputs, cost) = match self {
             Self::Distances { lattice, eta } => (
                 format!("distances {lattice} η = {eta}"),
-                format!("points {} {}", points(lattice), table.disorder(lattice, *eta)),
+                format!(
+                    "points {} side {} {}",
+                    points(lattice),
+                    side(lattice),
+                    table.disorder(lattice, *eta)
+                ),
                 points(lattice) * 60,
             ),
             Self::Consistency { lattice, eta, h } => (

@@ -91,10 +91,9 @@ impl ChaussonnetTable {
         self.h_m.truncate(3);
         self.h_m_3d.truncate(1);
         ends(&mut self.consistency_h_m);
-        if let [first, .., last] = self.field_scales[..] {
-            let middle = self.field_scales[self.field_scales.len() / 2];
-            self.field_scales = vec![first, middle, last];
-        }
+        // With 1, for which the figures are drawn.
+        let (first, last) = (self.field_scales.first().copied(), self.field_scales.last().copied());
+        self.field_scales.retain(|scale| *scale == 1.0 || Some(*scale) == first || Some(*scale) == last);
         self.consistency_side = self.consistency_side.map(|side| side.min(16)).map(|side| side.max(4));
         self.points = self.points.map(|points| points.min(1500));
         self
