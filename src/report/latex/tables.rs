@@ -13,6 +13,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The most rows of a further table; all of them are in the JSON and in CSV.
 const MOST_ROWS: usize = 40;
 
+/// The most fits; likewise.
+const MOST_FITS: usize = 120;
+
 /// The tables by the names of their files, without extension.
 pub(super) fn tables(report: &Report) -> Vec<(String, String)> {
     let sections = sections(report);
@@ -25,7 +28,7 @@ pub(super) fn tables(report: &Report) -> Vec<(String, String)> {
             found.push((name.to_owned(), text));
         }
     };
-    add("fits", (!report.fits.is_empty()).then(|| fits(report).long()));
+    add("fits", (!report.fits.is_empty()).then(|| fits(report).long() + &more(report.fits.len(), MOST_FITS)));
     add("viscosity-constants", structs(&report.viscosity_constants));
     add("laplacian-factors", structs(&report.laplacian_factors));
     add("inferred-domain-size", structs(&report.inferred_domain_size));
@@ -130,7 +133,7 @@ fn fits(report: &Report) -> Table {
             Cell::Text(format!("{kept} of {}", fit.points.len())),
         ])
     };
-    Table { heads, rows: report.fits.iter().map(row).collect() }
+    Table { heads, rows: report.fits.iter().take(MOST_FITS).map(row).collect() }
 }
 
 /// Quantity, published, derived, measured, its interval.
@@ -217,9 +220,13 @@ fn plain_rows(rows: &[BTreeMap<String, Value>]) -> Option<String> {
     let body = rows.iter().take(MOST_ROWS);
     let body = body.map(|row| Row::Cells(keys.iter().map(|key| cell(row.get(*key))).collect()));
     let heads = keys.iter().map(|key| natural(&plain(&key.replace('_', " ")))).collect();
-    let mut text = Table { heads, rows: body.collect() }.short();
-    if rows.len() > MOST_ROWS {
-        text += &format!("\n% {} rows more are in report.json and in CSV.\n", rows.len() - MOST_ROWS);
+    Some(Table { heads, rows: body.collect() }.short() + &more(rows.len(), MOST_ROWS))
+}
+
+/// Says what a table leaves out.
+fn more(rows: usize, most: usize) -> String {
+    match rows.saturating_sub(most) {
+        0 => String::new(),
+        left => format!("\n% {left} rows more are in report.json and in CSV.\n"),
     }
-    Some(text)
 }
