@@ -120,7 +120,7 @@ fn is_rung_of(rung: &RegularRung, spec: &RegularSpec) -> bool {
         && rung.norms.iter().all(|norms| norms.len() == spec.subjects.len())
 }
 
-/// What a rung found of its first subject, at its largest R/Δ.
+/// What a rung found of its first subject, at the last of its R/Δ.
 fn found_regular(spec: &RegularSpec, rung: &RegularRung) -> Option<String> {
     let (subject, support) = (spec.subjects.first()?, rung.supports.last()?);
     let norm = rung.norms.last()?.first()?;
