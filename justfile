@@ -32,6 +32,11 @@ bench-peers PEER *OPTIONS:
     target/peers/bin/pip install --quiet numpy numba
     python3 benches/peers/engine.py target/peers/bin/python {{ PEER }} {{ OPTIONS }}
 
+# Instructions of the engine for each directed pair (valgrind must be installed), and its time beside them.
+bench-instructions *OPTIONS:
+    cargo build --release --example throughput
+    python3 benches/instructions.py {{ OPTIONS }}
+
 # Regenerate the committed reports in place; with NAMES, only these, and new ones too.
 reports *NAMES:
     bash .ci/reports write {{ NAMES }}

@@ -204,11 +204,10 @@ fn plain(case: &Case, work: &Workload, i: usize) -> Vec<f64> {
 
 fn run(engine: &mut Engine, work: &Workload, columns: usize, out: &mut [f64]) -> Result<(), SumError> {
     let points = Points { positions: &work.positions, weights: &work.weights, fields: &[&work.field] };
-    let f = &work.field;
     if columns == 25 {
-        engine.run_with(&points, columns, out, |i, sums, row| finish::<2>(f[i], sums, row))
+        engine.run_with(&points, columns, out, |i, sums, row| finish::<2>(i.field(0), sums, row))
     } else {
-        engine.run_with(&points, columns, out, |i, sums, row| finish::<3>(f[i], sums, row))
+        engine.run_with(&points, columns, out, |i, sums, row| finish::<3>(i.field(0), sums, row))
     }
 }
 

@@ -176,6 +176,27 @@ fn a_field_enters_by_its_differences() {
     }
 }
 
+#[test]
+fn what_is_made_of_sums_sees_the_particle_they_belong_to() {
+    // Planted: the place among the sorted particles for the one among those given; the weight for the field.
+    let (kernel, support) = (by_id("wendland-c2").unwrap(), 0.7);
+    for dimension in 1..=3 {
+        let cloud = cloud(dimension, 500, 4.0, 31);
+        let wanted = [RadialSum { positions: 0, radial: 0, factor: Factor::Difference(0) }];
+        let mut engine = Engine::for_radial_sums(&kernel, dimension, support, &wanted).unwrap();
+        let mut rows = vec![0.0; 500 * 6];
+        let made = engine.run_with(&cloud.points(&[&cloud.field]), 6, &mut rows, |i, _, row| {
+            row[..3].copy_from_slice(&[i.index() as f64, i.weight(), i.field(0)]);
+            (0..dimension).for_each(|axis| row[3 + axis] = i.position(axis));
+        });
+        made.unwrap();
+        for (i, row) in rows.chunks(6).enumerate() {
+            assert_eq!(row[..3], [i as f64, cloud.weights[i], cloud.field[i]]);
+            assert_eq!(row[3..], cloud.positions[i], "{dimension}-D");
+        }
+    }
+}
+
 /// Two of four fields, more than are written out when compiling.
 #[test]
 fn fields_enter_on_every_path_alike() {

@@ -11,7 +11,7 @@ mod reduction;
 mod roots;
 mod shells;
 
-pub use engine::{Engine, Factor, Path, Points, RadialSum};
+pub use engine::{Centre, Engine, Factor, Path, Points, RadialSum};
 pub use error::SumError;
 pub use lattice_sum::{LatticeSums, SupportCount, nearest_distance};
 pub use moment::{Component, MAX_DERIVATIVES, MAX_POSITIONS, Moment};

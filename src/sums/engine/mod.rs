@@ -29,5 +29,5 @@ mod sorted;
 mod vector;
 
 pub use request::{Factor, RadialSum};
-pub use run::{Engine, Points};
+pub use run::{Centre, Engine, Points};
 pub use vector::Path;

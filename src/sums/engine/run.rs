@@ -28,6 +28,48 @@ pub struct Points<'a> {
     pub fields: &'a [&'a [f64]],
 }
 
+/// The particle i of some sums, with its own quantities: they are read where the engine has them side by side, which is
+/// not where the caller keeps them.
+#[derive(Debug, Clone, Copy)]
+pub struct Centre<'a> {
+    sorted: &'a Sorted,
+    dimension: usize,
+    place: usize,
+    index: usize,
+}
+
+impl Centre<'_> {
+    /// Its place among the particles given.
+    pub fn index(&self) -> usize {
+        self.index
+    }
+
+    /// A coordinate.
+    ///
+    /// # Panics
+    /// If there is no such axis.
+    #[inline]
+    pub fn position(&self, axis: usize) -> f64 {
+        assert!(axis < self.dimension, "no such axis");
+        self.sorted.table.column(axis)[self.place]
+    }
+
+    /// ω_i.
+    #[inline]
+    pub fn weight(&self) -> f64 {
+        self.sorted.table.column(self.dimension)[self.place]
+    }
+
+    /// Value of a field that the sums name.
+    ///
+    /// # Panics
+    /// If none of them names this field or a later one.
+    #[inline]
+    pub fn field(&self, field: usize) -> f64 {
+        self.sorted.table.column(self.dimension + 1 + field)[self.place]
+    }
+}
+
 /// Sums over all neighbours of all particles, r_ij · r_ij < R² as evaluated in f64, i included, no axis periodic.
 ///
 /// Results are in the units of positions and weights: a moment sum with constant weights ω = Δ^D is the one of a paper.
@@ -131,7 +173,7 @@ impl Engine {
     }
 
     /// As [`Engine::run`], but each row, of `width` numbers, is made of the sums of its particle by
-    /// `finish(particle, sums, row)`.
+    /// `finish(centre, sums, row)`.
     ///
     /// # Errors
     /// As [`Engine::run`].
@@ -140,7 +182,7 @@ impl Engine {
         points: &Points<'_>,
         width: usize,
         out: &mut [f64],
-        finish: impl Fn(usize, &[f64], &mut [f64]) + Sync + Send,
+        finish: impl Fn(Centre<'_>, &[f64], &mut [f64]) + Sync + Send,
     ) -> Result<(), SumError> {
         self.check_points(points, width, out)?;
         let points = Points { fields: &points.fields[..self.plan.fields], ..*points };
@@ -157,7 +199,7 @@ impl Engine {
         &self,
         width: usize,
         out: &mut [f64],
-        finish: &(impl Fn(usize, &[f64], &mut [f64]) + Sync + Send),
+        finish: &(impl Fn(Centre<'_>, &[f64], &mut [f64]) + Sync + Send),
     ) -> u64
     where
         Space<D>: Take,
@@ -181,8 +223,9 @@ impl Engine {
                         plan.combine(sums, columns);
                         sums = columns;
                     }
-                    let (particle, row) = rows.row(first + particle);
-                    finish(particle, sums, row);
+                    let place = first + particle;
+                    let (index, row) = rows.row(place);
+                    finish(Centre { sorted, dimension: D, place, index }, sums, row);
                 }
             });
             pairs.fetch_add(std::mem::take(&mut scratch.pairs), Relaxed);
