@@ -6,6 +6,7 @@
 use jsonschema::Validator;
 use remainder::report::{ClaimKind, Report};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
@@ -92,6 +93,22 @@ fn the_schema_refuses_what_is_no_report() {
 }
 
 /// The committed reports are reports.
+#[test]
+fn lines_of_a_figure_can_be_told_apart() {
+    // Seen to fail where a lattice came twice, with two disorders.
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports");
+    for entry in fs::read_dir(folder).unwrap() {
+        let Ok(text) = fs::read_to_string(entry.unwrap().path().join("report.json")) else { continue };
+        let Ok(report) = serde_json::from_str::<Report>(&text) else { continue };
+        let ids: BTreeSet<&str> = report.series.iter().map(|series| series.id.as_str()).collect();
+        assert_eq!(ids.len(), report.series.len(), "{}", report.provenance.scene);
+        for series in &report.series {
+            let names: BTreeSet<&str> = series.lines.iter().map(|line| line.name.as_str()).collect();
+            assert_eq!(names.len(), series.lines.len(), "{} {}", report.provenance.scene, series.id);
+        }
+    }
+}
+
 #[test]
 fn the_committed_reports_validate() {
     let validator = validator();

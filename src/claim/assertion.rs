@@ -108,6 +108,8 @@ pub enum Published {
     },
     /// A quantity vanishes.
     Zero,
+    /// Something happens in none of the values looked at.
+    Never,
     /// A quantity rises, falls or stays.
     Trend {
         /// The quantity.
@@ -141,6 +143,13 @@ pub enum Observed {
         largest: f64,
         /// Up to which magnitude rounding explains it; 0 where it vanishes exactly.
         floor: f64,
+    },
+    /// How often it happens after all.
+    Exceptions {
+        /// In so many values,
+        count: usize,
+        /// of so many.
+        among: usize,
     },
     /// Both sides of a relation.
     Sides {
@@ -188,6 +197,11 @@ impl Published {
                     )
                 }
             }
+            (Self::Never, Observed::Exceptions { count, among }) => match (count, among) {
+                (_, 0) => (Verdict::Inconclusive, "there was no value to look at".to_owned()),
+                (0, _) => (Verdict::Confirmed, format!("no exception among {among} values")),
+                _ => (Verdict::Refuted, format!("{count} of {among} values are exceptions")),
+            },
             (Self::Trend { direction, margin, .. }, Observed::Number(slope)) => {
                 trend(*direction, *slope, *margin)
             }
@@ -321,6 +335,8 @@ mod tests {
         );
         let zero = |largest, floor| Published::Zero.judge(&Observed::Zero { largest, floor }).verdict;
         assert_eq!([zero(0.0, 0.0), zero(1e-17, 1e-16), zero(1e-3, 1e-16)], [Confirmed, Confirmed, Refuted]);
+        let never = |count, among| Published::Never.judge(&Observed::Exceptions { count, among }).verdict;
+        assert_eq!([never(0, 9), never(1, 9), never(0, 0)], [Confirmed, Refuted, Inconclusive]);
     }
 
     #[test]

@@ -65,6 +65,7 @@ impl Published {
             Self::Ratio { value, margin } => format!("ratio = {value} ({})", percent(*margin)),
             Self::Exponent { of, value, margin } => format!("∝ {}^{value} (held to ±{margin})", of.symbol()),
             Self::Order { of, value, margin } => format!("O({}^{value}) (held to ±{margin})", of.symbol()),
+            Self::Never => "no exceptions".into(),
             Self::Zero => "= 0".into(),
             Self::Trend { of, against, direction, margin } => {
                 let word = match direction {

@@ -21,11 +21,25 @@ fn extreme_cases_are_accurate_degraded_or_refused_and_never_unnoticed() {
     assert_eq!(folder.bytes("out/report.json"), folder.bytes("again/report.json"));
     let report = folder.json("out/report.json");
     let rows = rows(&report, "extremes");
-    assert_eq!(rows.len(), 5 * (1 + 1 + 4 + 3 + 1 + 2 + 1 + 1 + 1 + 1));
-    let of = |situation: &str, operator: &str| {
-        let found = rows.iter().find(|row| row["situation"] == situation && row["operator"] == operator);
-        found.cloned().unwrap_or_else(|| panic!("no {operator} {situation}"))
+    assert_eq!(rows.len(), 2 * 5 * (1 + 1 + 4 + 3 + 1 + 2 + 1 + 1 + 1 + 1));
+    let in_dimension = |dimension: usize, situation: &str, operator: &str| {
+        let is = |row: &&Value| {
+            row["dimension"] == dimension && row["situation"] == situation && row["operator"] == operator
+        };
+        rows.iter().find(is).cloned().unwrap_or_else(|| panic!("no {operator} {situation}"))
     };
+    let of = |situation: &str, operator: &str| in_dimension(2, situation, operator);
+    assert_eq!(in_dimension(3, "R/Δ = 1.2", "F2")["neighbours"], 6);
+    assert_eq!(in_dimension(3, "R/Δ = 1.2", "S4")["status"], "refused");
+    assert_eq!(in_dimension(3, "on a line", "F4")["status"], "refused");
+    assert_eq!(in_dimension(3, "in a corner", "S4")["status"], "accurate");
+    assert!(
+        report["claims"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .all(|claim| claim["measured"]["value"]["value"] == "0")
+    );
     // Four neighbours on the axes do not tell xy apart.
     let s4 = of("R/Δ = 1.2", "S4");
     assert!(s4["status"] == "refused" && s4["reason"].as_str().is_some_and(|why| why.contains("B̂")), "{s4}");
@@ -88,6 +102,7 @@ fn bad_batteries_are_refused_at_their_place() {
         ("extremes", "kernel = \"gaussian\"", "twice the digits"),
         ("extremes", "aspects = [1e6]", "1000"),
         ("extremes", "operators = [\"F9\"]", "F9"),
+        ("extremes", "dimensions = [1]", "neither 2 nor 3"),
         ("work-precision", "disorders = [\"box:x\"]", "box"),
         ("work-precision", "support_over_dx = [40]", "40"),
         ("work-precision", "operators = [\"MEA\"]", "MEA"),

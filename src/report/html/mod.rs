@@ -6,6 +6,7 @@
 mod citation;
 mod column;
 mod evidence;
+mod formula;
 mod index;
 mod math;
 mod shell;

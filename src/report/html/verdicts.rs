@@ -4,6 +4,7 @@ use super::Detail;
 use super::citation::paper;
 use super::column::{Which, cell, summary};
 use super::evidence::{Fitted, evidence};
+use super::formula::formula;
 use super::math::order;
 use super::text::rich;
 use crate::record::{ClaimEntry, Report, Verdict};
@@ -98,10 +99,11 @@ fn claim(
     if let Some([operator, expansion, conserves]) = &section.operator {
         let _ = write!(
             page,
-            "<p>Expansion of {}: {}. It conserves {}.</p>",
+            "<p>Expansion of {}, which conserves {}:</p><div class=\"scroll\" tabindex=\"0\" role=\"group\" \
+             aria-label=\"Expansion\">{}</div>",
             rich(operator),
-            rich(expansion),
-            rich(conserves)
+            rich(conserves),
+            formula(expansion)
         );
     }
     page.push_str("<div class=\"cases\">");

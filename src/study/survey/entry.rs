@@ -79,7 +79,7 @@ fn combine(measured: Option<Judgement>, derived: Option<Judgement>) -> Judgement
 
 fn kind(published: &Published) -> ClaimKind {
     match published {
-        Published::Constant { .. } => ClaimKind::Constant,
+        Published::Constant { .. } | Published::Never => ClaimKind::Constant,
         Published::Ratio { .. } => ClaimKind::Ratio,
         Published::Exponent { .. } | Published::Order { .. } => ClaimKind::PowerLaw,
         Published::Zero => ClaimKind::Zero,
@@ -96,7 +96,7 @@ fn margin(published: &Published) -> Option<f64> {
         Published::Exponent { margin, .. }
         | Published::Order { margin, .. }
         | Published::Trend { margin, .. } => Some(*margin),
-        Published::Zero | Published::Relation { .. } => None,
+        Published::Zero | Published::Never | Published::Relation { .. } => None,
     }
 }
 
@@ -112,6 +112,7 @@ fn printed(published: &Published) -> Column {
         Published::Exponent { of, value, .. } | Published::Order { of, value, .. } => {
             Column { exponents: Some(exponents(*of, number(*value))), ..Column::default() }
         }
+        Published::Never => exceptions(0, Source::Print),
         Published::Zero => {
             Column { zero: Some(Zero { holds: true, by: None, bound: None }), ..Column::default() }
         }
@@ -157,11 +158,20 @@ fn column(published: &Published, found: &Observed, by: Source) -> Column {
                 ..Column::default()
             }
         }
+        (_, Observed::Exceptions { count, .. }) => exceptions(*count, by),
         (_, Observed::Sides { left, right }) => {
             let holds = published.judge(found).verdict == Verdict::Confirmed;
             let sides = Some((number(left), number(right)));
             Column { relation: relation(published, holds, sides), ..Column::default() }
         }
+    }
+}
+
+fn exceptions(count: usize, by: Source) -> Column {
+    Column {
+        value: Some(Estimate::exact(count.to_string(), by)),
+        unit: Some("exceptions".into()),
+        ..Column::default()
     }
 }
 

@@ -310,7 +310,7 @@ impl Fronts {
             flops_applied: rounded(2.0 * components * weights / each),
             bytes_applied: rounded((4.0 + 8.0 * components) * weights / each + 8.0 + 8.0 * components),
             flops_direct: rounded(flops_direct),
-            // A list entry of 32 bytes, and position-free data of the neighbour, for each pair and pass.
+            // A list entry of 32 bytes, and 16 of the neighbour's volume and value, for each pair and pass.
             bytes_direct: rounded(program.passes() as f64 * 48.0 * pairs / each),
             flops_assembled: rounded(colours * flops_direct),
             kernels_per_pair: counted.kernels_per_pair,
@@ -364,8 +364,12 @@ fn assertion() -> Assertion {
 }
 
 type Counted = fn(&Point) -> f64;
-const COSTS: [(&str, Counted); 2] =
-    [("flops_applied", |point| point.flops_applied), ("flops_direct", |point| point.flops_direct)];
+const COSTS: [(&str, Counted); 4] = [
+    ("flops_applied", |point| point.flops_applied),
+    ("bytes_applied", |point| point.bytes_applied),
+    ("flops_direct", |point| point.flops_direct),
+    ("bytes_direct", |point| point.bytes_direct),
+];
 
 type Second = fn(&(Point, Timed)) -> f64;
 const SECONDS: [(&str, Second); 2] =

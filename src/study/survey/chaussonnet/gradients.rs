@@ -447,17 +447,20 @@ pub(super) fn lines(
 ) -> Vec<crate::record::Line> {
     let mut lines = Vec::new();
     for at in cases {
+        // Where a lattice comes twice, its disorder tells the lines apart.
+        let twice = cases.iter().any(|other| other.lattice == at.lattice && other.eta != at.eta);
+        let of = if twice { format!("{}, η = {}", at.lattice, at.eta) } else { at.lattice.to_owned() };
         for name in names {
             let mut all = along.cases(found, *at);
             if along == Along::Eta {
                 all.insert(0, (0.0, At { eta: 0.0, ..*at }));
             }
             let measured = all.iter().filter_map(|(x, at)| found.rms(*at, name).map(|(y, e)| (*x, y, e)));
-            lines.push(line(format!("{name}, {}", at.lattice), measured));
+            lines.push(line(format!("{name}, {of}"), measured));
             let derived = all.iter().filter_map(|(x, at)| found.derived(*at, name).map(|y| (*x, y, 0.0)));
             let derived: Vec<_> = derived.collect();
             if !derived.is_empty() {
-                lines.push(line(format!("{name}, {}, derived", at.lattice), derived.into_iter()));
+                lines.push(line(format!("{name}, {of}, derived"), derived.into_iter()));
             }
         }
     }
