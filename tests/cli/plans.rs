@@ -1,7 +1,7 @@
 //! `plan` says what will run, and that is what runs; `schema` and `list`.
 
 use crate::folder::Folder;
-use crate::scenes::{REGULAR, SMALL};
+use crate::scenes::{DISORDERED, REGULAR, SMALL};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -262,4 +262,51 @@ fn what_is_listed_can_be_named() {
             .iter()
             .any(|item| item["what"].as_str().is_some_and(|what| what.starts_with("moments ")))
     );
+}
+
+/// Exact sums and samples that each needs, by hand: what symmetry settles takes nothing, a component that equals another is
+/// summed once, and so is a moment that two claims ask for; disorder is laid only where it is asked for.
+#[test]
+fn ten_scenes_take_what_they_need() {
+    // Places on the ladders: 6 steps of 4 offsets, 5 of 3, 5 of 2; under disorder 5 steps and 5 amplitudes of 8 samples.
+    let [line, square, cube, disordered] = [6 * 4, 5 * 3, 5 * 2, (5 + 5) * 8];
+    let scenes = [
+        // Σω∇W and Σωrr∇W are odd.
+        (["wendland-c2"].as_slice(), ["line"].as_slice(), "fatehi-eq-28\", \"fatehi-eq-29", 0, 0),
+        // B⁻¹ is a multiple of 1 on all three lattices: one of 1, 4 and 9 components.
+        (&["wendland-c2"], &["line"], "fatehi-eq-33", line, 0),
+        (&["wendland-c2"], &["square"], "fatehi-eq-33", square, 0),
+        (&["wendland-c2"], &["simple-cubic"], "fatehi-eq-33", cube, 0),
+        // Offsets go through one spacing of h, which is two of R for the spline.
+        (&["wendland-c2", "cubic-spline"], &["line", "square"], "fatehi-eq-33", (1 + 2) * (line + square), 0),
+        // A symmetric tensor of rank 4 has xxxx and xxyy there.
+        (&["wendland-c2"], &["square"], "fatehi-eq-34", 2 * square, 0),
+        (&["wendland-c2"], &["simple-cubic"], "fatehi-eq-34", 2 * cube, 0),
+        // Two claims on one moment.
+        (&["wendland-c2"], &["line"], "fatehi-eq-32/b_inverse#regular\", \"fatehi-eq-33", line, 0),
+        // A scalar.
+        (&["wendland-c2"], &["square"], "fatehi-eq-36", square, 0),
+        // Its regular value is zero: samples alone.
+        (&["wendland-c2"], &["line"], "fatehi-eq-38", 0, disordered),
+    ];
+    for (kernels, lattices, claims, exact_sums, samples) in scenes {
+        let folder = Folder::new();
+        let disorders = if samples > 0 { "disorders = [\"box:0.4\"]\n" } else { "" };
+        let mut scene = format!(
+            "[cases]\nkernels = {kernels:?}\nlattices = {lattices:?}\n{disorders}\n[claims]\nuse = [\"{claims}\"]\n\
+             [samples]\nblock = 8\nmost_blocks = 1\n"
+        );
+        for (dimension, to, rungs, offsets) in [(1, 32, 6, 4), (2, 16, 5, 3), (3, 16, 5, 2)] {
+            scene += &format!(
+                "[[ladders.regular]]\ndimension = {dimension}\nfrom = 4\nto = {to}\nrungs = {rungs}\noffsets = {offsets}\n"
+            );
+        }
+        folder.write("small.toml", scene + DISORDERED);
+        let plan = plan(&folder, "small.toml");
+        folder.run("run small.toml --store store");
+        let cost = &folder.json("reports/small/report.json")["cost"];
+        let found = |of: &Value, samples: &str| [number(&of["exact_sums"]), number(&of[samples])];
+        assert_eq!(found(cost, "samples"), [exact_sums, samples], "{claims} {lattices:?}");
+        assert_eq!(found(&plan, "most_samples"), [exact_sums, samples], "{claims} {lattices:?}");
+    }
 }
