@@ -105,6 +105,7 @@ fn bad_batteries_are_refused_at_their_place() {
         ("extremes", "aspects = [1e6]", "1000"),
         ("extremes", "operators = [\"F9\"]", "F9"),
         ("extremes", "dimensions = [1]", "neither 2 nor 3"),
+        ("extremes", "dimensions = []", "names none"),
         ("work-precision", "disorders = [\"box:x\"]", "box"),
         ("work-precision", "support_over_dx = [40]", "40"),
         ("work-precision", "operators = [\"MEA\"]", "MEA"),

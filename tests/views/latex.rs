@@ -48,10 +48,10 @@ fn pdflatex(folder: &Folder, arguments: &[&str]) {
 }
 
 /// Figures of one report that are compiled, evenly out of all: its ladders are made alike, and each takes a second.
-const FIGURES: usize = 4;
+const FIGURES: usize = 3;
 
 /// Rows of one table that are compiled: setting a column by its decimal points takes siunitx some 20 ms a row.
-const ROWS: usize = 150;
+const ROWS: usize = 100;
 
 /// A table that goes over pages, to its first rows.
 fn shortened(table: &str) -> String {

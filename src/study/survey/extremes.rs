@@ -174,6 +174,9 @@ impl Parameters for Extremes {
             Some(value) => Err((key.to_owned(), format!("{value} is not between {from} and {to}"))),
             None => Ok(()),
         };
+        if self.dimensions.is_empty() {
+            return Err(("dimensions".into(), "names none: give 2, 3 or both".into()));
+        }
         if let Some(other) = self.dimensions.iter().find(|dimension| ![2, 3].contains(*dimension)) {
             return Err(("dimensions".into(), format!("{other} is neither 2 nor 3")));
         }
