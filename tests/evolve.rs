@@ -1,6 +1,6 @@
 //! Operators in time: matrices against operators, integrators against exact solutions and their own orders, runs that blow up.
 //!
-//! Planted, one for each test but `only_scalar_to_scalar_operators_are_matrices`: colours too close, a wrong half step, weight, stage or
+//! Planted, one for each test but `only_scalar_to_scalar_operators_are_matrices`: a wrong weight, half step, stage or
 //! exponential, a limit of stability too high, no end of growth, walls that reflect or conduct wrongly.
 
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.

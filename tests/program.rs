@@ -288,6 +288,11 @@ fn agrees(text: &str, id: &str, cloud: &Cloud, kernel: &Kernel, every: usize) {
     let width = program.components();
     assert_eq!(compiled.len(), width * cloud.len());
     assert_eq!(width, cloud.dimension().pow(u32::from(operator.rank())));
+    let weights = match operator.field {
+        Field::Scalar => program.weights(cloud, &lists).unwrap(),
+        Field::Vector => Vec::new(),
+    };
+    assert!(weights.iter().flatten().all(|row| row.is_sorted_by(|a, b| a.0 < b.0)), "{id}");
     let walk = Walk::new(cloud, &lists, kernel, &u, &v);
     for i in (0..cloud.len()).step_by(every) {
         let mut bound = HashMap::from([(0, (i, cloud.positions()[i]))]);
@@ -300,6 +305,15 @@ fn agrees(text: &str, id: &str, cloud: &Cloud, kernel: &Kernel, every: usize) {
                 cloud.dimension(),
                 kernel.id()
             );
+            if let Some(rows) = weights.get(component) {
+                let found: f64 = rows[i].iter().map(|(j, weight)| weight * u[*j as usize]).sum();
+                assert!(
+                    (found - value).abs() <= 1e-11 * magnitude,
+                    "{id} in {}-D with {}: weights of component {component} of particle {i} give {found}, walked {value} of {magnitude}",
+                    cloud.dimension(),
+                    kernel.id()
+                );
+            }
         }
     }
 }
@@ -389,6 +403,30 @@ fn threads_do_not_change_a_bit() {
     assert_eq!(on(1), on(3));
 }
 
+/// Weight w_ij is the value at i of the field that is 1 at j alone: to the bit, where no neighbour's own sums enter.
+#[test]
+fn a_weight_is_the_value_on_one_particle() {
+    let kernel = by_id("wendland-c2").unwrap();
+    let cloud = small_cloud(2);
+    let lists = Neighbours::search(&cloud).unwrap();
+    for (id, exact) in [("S4", true), ("F4", true), ("shepard", true), ("F3", true), ("S1-8-F4", false)] {
+        let entry = remainder::language::operators::by_id(id).unwrap();
+        let program = Program::new(&entry.operator().unwrap(), &kernel, 2).unwrap();
+        let (weights, width) = (program.weights(&cloud, &lists).unwrap(), program.components());
+        let largest = weights.iter().flatten().flatten().fold(0.0_f64, |m, (_, weight)| m.max(weight.abs()));
+        for j in [0, 37, 99] {
+            let u: Vec<f64> = (0..cloud.len()).map(|k| f64::from(u8::from(k == j))).collect();
+            let values = program.apply(&cloud, &lists, Fields::Scalar(&u)).unwrap();
+            for (place, value) in values.iter().enumerate() {
+                let row = &weights[place % width][place / width];
+                let weight = row.iter().find(|(k, _)| *k as usize == j).map_or(0.0, |(_, weight)| *weight);
+                let apart = if exact { 0.0 } else { 1e-13 * largest };
+                assert!((weight - value).abs() <= apart, "{id}: {weight} is {value} at {place}");
+            }
+        }
+    }
+}
+
 #[test]
 fn one_pass_is_enough_where_factors_can_be_taken_out() {
     let kernel = by_id("wendland-c2").unwrap();
@@ -415,9 +453,13 @@ fn lists_of_some_particles_give_their_values() {
     let some = Neighbours::search_at(&cloud, &[31, 4]).unwrap();
     let at = f4.apply(&cloud, &some, Fields::Scalar(&u)).unwrap();
     assert_eq!(at, [all[62], all[63], all[8], all[9]]);
+    let rows = f4.weights(&cloud, &Neighbours::search(&cloud).unwrap()).unwrap();
+    let rows_at = f4.weights(&cloud, &some).unwrap();
+    assert_eq!(rows_at[1], [rows[1][31].clone(), rows[1][4].clone()]);
     let nested = compiled("sum_j V_j F2[u]_j . gradW_ij");
     let error = nested.apply(&cloud, &some, Fields::Scalar(&u)).unwrap_err();
     assert_eq!(error, ProgramError::Lists { found: 2, expected: 100 });
+    assert_eq!(nested.weights(&cloud, &some).unwrap_err(), error);
 }
 
 #[test]

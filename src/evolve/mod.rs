@@ -19,7 +19,7 @@ mod matrix;
 pub mod spectrum;
 mod system;
 
-pub use assemble::{assemble, probes};
+pub use assemble::assemble;
 pub use error::{EvolveError, Unstable};
 pub use explicit::{Explicit, chebyshev_stages, march};
 pub use implicit::{Implicit, Solver, march_implicit, steady};

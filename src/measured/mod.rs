@@ -34,7 +34,7 @@ pub use error_sample::{SampledError, sampled_error};
 pub use momentum::{Totals, totals};
 pub use placed::{PlaceError, Placed};
 pub use pressure::{Correction, GradientForm, PressureErrors, PressureField, PressureSpec, pressure_errors};
-pub use program::{Fields, Operations, Program, ProgramError};
+pub use program::{Fields, Operations, Program, ProgramError, Weights};
 pub use regular::{RegularError, RegularNorm, RegularRung, RegularSpec, regular_rung};
 pub use rounding::{Rounding, RoundingError, computed, rounding};
 pub use row::{RowErrors, RowVolumes, row_errors};

@@ -6,7 +6,7 @@ use super::expression::Arena;
 use super::instruction::Source;
 use super::kernel::RadialFunctions;
 use super::lower::Lowering;
-use super::run::{self, Columns, Inputs};
+use super::run::{self, Columns, Context, Inputs};
 use super::schedule::{self, Pass};
 use crate::exact::rational_to_f64;
 use crate::kernel::Kernel;
@@ -114,36 +114,38 @@ impl Program {
             let last = index + 1 == self.passes.len();
             // Pass 0 does not look at neighbours; the last one is taken where there are lists.
             let lists = (index > 0 || last).then_some(neighbours);
-            let values = run::pass(pass, self, &inputs, &stored, lists)?;
+            let context = Context { pass, program: self, inputs: &inputs, stored: &stored, lists, probe: None };
+            let values = run::pass(context)?;
             stored.push(Columns { values: Cow::Owned(values), stride: pass.columns.len(), offset: 0 });
         }
-        let values = stored.pop().map(|columns| columns.values.into_owned()).unwrap_or_default();
-        self.in_units(values, self.unit(support), neighbours)
+        let mut values = stored.pop().map(|columns| columns.values.into_owned()).unwrap_or_default();
+        let width = self.components.max(1);
+        Self::in_units(values.iter_mut().enumerate(), self.unit(support), |at| neighbours.centre(at / width))?;
+        Ok(values)
     }
 
-    /// The values times the unit, if the largest of them is a number that keeps its digits.
-    fn in_units(
-        &self,
-        mut values: Vec<f64>,
+    /// Multiplies the values by the unit, if the largest of them is a number then that keeps its digits. Each comes with a place,
+    /// and each place has a particle.
+    pub(super) fn in_units<'a>(
+        values: impl Iterator<Item = (usize, &'a mut f64)>,
         unit: f64,
-        neighbours: &Neighbours,
-    ) -> Result<Vec<f64>, ProgramError> {
-        let (mut largest, mut place) = (0.0, 0);
-        for (at, value) in values.iter_mut().enumerate() {
-            if value.abs() > largest {
-                (largest, place) = (value.abs(), at);
-            }
+        particle: impl Fn(usize) -> usize,
+    ) -> Result<(), ProgramError> {
+        let (mut largest, mut there) = (0.0_f64, (0, 0.0));
+        for (place, value) in values {
+            let before = value.abs();
             *value *= unit;
+            if before > largest {
+                (largest, there) = (before, (place, *value));
+            }
         }
-        let particle = || neighbours.centre(place / self.components.max(1));
+        let (place, value) = there;
         match largest * unit {
-            value if !value.is_finite() => {
-                Err(ProgramError::NotFinite { particle: particle(), value: values[place] })
+            found if !found.is_finite() => Err(ProgramError::NotFinite { particle: particle(place), value }),
+            found if largest > 0.0 && found < f64::MIN_POSITIVE => {
+                Err(ProgramError::TooSmall { particle: particle(place) })
             }
-            value if largest > 0.0 && value < f64::MIN_POSITIVE => {
-                Err(ProgramError::TooSmall { particle: particle() })
-            }
-            _ => Ok(values),
+            _ => Ok(()),
         }
     }
 
@@ -160,12 +162,12 @@ impl Program {
     }
 
     /// What the value is to be multiplied by, lengths having been in units of R.
-    fn unit(&self, support: f64) -> f64 {
+    pub(super) fn unit(&self, support: f64) -> f64 {
         support.powi(self.units.length + self.units.volume * self.dimension as i32)
     }
 
     /// The support of all particles.
-    fn check(&self, cloud: &Cloud, neighbours: &Neighbours, field: Fields<'_>) -> Result<f64, ProgramError> {
+    pub(super) fn check(&self, cloud: &Cloud, neighbours: &Neighbours, field: Fields<'_>) -> Result<f64, ProgramError> {
         if cloud.dimension() != self.dimension {
             return Err(ProgramError::OtherDimension { expected: self.dimension, found: cloud.dimension() });
         }
@@ -194,7 +196,7 @@ impl Program {
         Ok(support)
     }
 
-    fn inputs<'a>(
+    pub(super) fn inputs<'a>(
         &self,
         cloud: &'a Cloud,
         field: Fields<'a>,

@@ -3,6 +3,7 @@
 use super::compile::Program;
 use super::instruction::{Code, Instruction, Operation};
 use super::kernel::RadialFunctions;
+use super::schedule::Pass;
 
 /// Additions, multiplications, divisions and roots of one application.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -22,13 +23,23 @@ impl Program {
     pub fn operations(&self) -> Operations {
         let mut operations = Operations::default();
         for pass in self.all_passes() {
-            let (pair, particle) = (self.of_code(&pass.pairs), self.of_code(&pass.particles));
-            operations.per_pair += pair.per_pair;
-            operations.kernels_per_pair += pair.kernels_per_pair;
-            operations.per_particle += particle.per_pair;
-            operations.systems_per_particle += pair.systems_per_particle + particle.systems_per_particle;
+            let pass = self.operations_of(pass);
+            operations.per_pair += pass.per_pair;
+            operations.kernels_per_pair += pass.kernels_per_pair;
+            operations.per_particle += pass.per_particle;
+            operations.systems_per_particle += pass.systems_per_particle;
         }
         operations
+    }
+
+    pub(super) fn operations_of(&self, pass: &Pass) -> Operations {
+        let (pair, particle) = (self.of_code(&pass.pairs), self.of_code(&pass.particles));
+        Operations {
+            per_pair: pair.per_pair,
+            per_particle: particle.per_pair,
+            kernels_per_pair: pair.kernels_per_pair,
+            systems_per_particle: pair.systems_per_particle + particle.systems_per_particle,
+        }
     }
 
     fn of_code(&self, code: &Code) -> Operations {

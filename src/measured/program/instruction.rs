@@ -87,6 +87,14 @@ pub(super) struct Code {
 }
 
 impl Operation {
+    /// Where it takes a number of a particle from.
+    pub(super) fn source(&self) -> Option<Source> {
+        match self {
+            Self::Gather(source) | Self::Difference(source) | Self::Own(source) => Some(*source),
+            _ => None,
+        }
+    }
+
     pub(super) fn reads(&self) -> Vec<Register> {
         match self {
             Self::Gather(_) | Self::Difference(_) | Self::Own(_) | Self::Fill(_) | Self::Square => Vec::new(),

@@ -3,6 +3,10 @@
 //! Eight particles stand side by side: lane 8k + p of a group is the k-th pair of its p-th particle, so that the sums of all
 //! eight grow together. Where a particle has fewer neighbours than another of its group, lanes at distance R hold no pair. A
 //! particle's pairs are added up in the order of its list, whatever stands beside it and whichever thread it is on.
+//!
+//! [`weights`] takes the derivative of a pass by what its particles carry instead. As the pass is linear in that, the weight of
+//! a neighbour is the value where it alone carries 1: its own term stands for the whole sum, and the code of the particles is
+//! carried out on pairs.
 
 use super::ProgramError;
 use super::compile::Program;
@@ -56,12 +60,31 @@ impl View<'_> {
 }
 
 /// What a pass works on, the same for every thread.
-struct Context<'a> {
-    pass: &'a Pass,
-    program: &'a Program,
-    inputs: &'a Inputs<'a>,
-    stored: &'a [Columns<'a>],
-    lists: Option<&'a Neighbours>,
+#[derive(Clone, Copy)]
+pub(super) struct Context<'a> {
+    pub(super) pass: &'a Pass,
+    pub(super) program: &'a Program,
+    pub(super) inputs: &'a Inputs<'a>,
+    pub(super) stored: &'a [Columns<'a>],
+    pub(super) lists: Option<&'a Neighbours>,
+    pub(super) probe: Option<Probe<'a>>,
+}
+
+/// Of all that depends on the field, one source is 1 at one particle, and everything else 0.
+#[derive(Clone, Copy)]
+pub(super) struct Probe<'a> {
+    pub(super) dependent: &'a [Source],
+    pub(super) source: Source,
+    at: At,
+}
+
+/// Where the source is 1.
+#[derive(Clone, Copy, PartialEq)]
+enum At {
+    /// At the neighbour of each pair by itself, if that is another particle: every pair is a case of its own.
+    Neighbour,
+    /// At the particle.
+    Centre,
 }
 
 /// Numbers of eight particles side by side.
@@ -71,6 +94,8 @@ type Row = [f64; GROUP];
 struct Group {
     /// Place of the first of them among the particles.
     slot: usize,
+    /// The pair of each that stands in the first row, by its place in the particle's list.
+    first: usize,
     /// The particles themselves; where there are fewer than eight, the first of them again.
     centres: [usize; GROUP],
     rows: Range<usize>,
@@ -88,23 +113,22 @@ struct Scratch {
     filled: usize,
     /// The particle in each place.
     centres: Vec<usize>,
+    /// Where the pairs of each particle begin, and where those of the last one end.
+    starts: Vec<usize>,
+    /// The summands of each sum that depends on the field, by pair.
+    terms: Vec<Vec<f64>>,
+    /// In which places the particle itself carries the 1.
+    own: Vec<bool>,
 }
 
 /// Runs one pass; its columns, by particle.
-pub(super) fn pass(
-    pass: &Pass,
-    program: &Program,
-    inputs: &Inputs<'_>,
-    stored: &[Columns<'_>],
-    lists: Option<&Neighbours>,
-) -> Result<Vec<f64>, ProgramError> {
-    let width = pass.columns.len();
-    let count = lists.map_or(inputs.particles, Neighbours::len);
+pub(super) fn pass(context: Context<'_>) -> Result<Vec<f64>, ProgramError> {
+    let width = context.pass.columns.len();
+    let count = context.count();
     let mut values = vec![0.0; width * count];
     if width == 0 {
         return Ok(values);
     }
-    let context = Context { pass, program, inputs, stored, lists };
     let failures: Vec<Option<ProgramError>> = values
         .par_chunks_mut(width * PARTICLES)
         .enumerate()
@@ -116,7 +140,38 @@ pub(super) fn pass(
     failures.into_iter().flatten().next().map_or(Ok(values), Err)
 }
 
+/// The derivatives of a pass's columns by one of its sources: column by column, one for each pair of the lists, or, where there
+/// are none, for each particle.
+pub(super) fn weights<'a>(
+    context: Context<'a>,
+    source: Source,
+    dependent: &'a [Source],
+) -> Result<Vec<Vec<f64>>, ProgramError> {
+    let probe = |at| Context { probe: Some(Probe { dependent, source, at }), ..context };
+    let (neighbour, centre) = (probe(At::Neighbour), probe(At::Centre));
+    let (depends, _) = context.pass.depends_on(dependent);
+    let count = context.count();
+    let chunks: Vec<Vec<Vec<f64>>> = (0..count.div_ceil(PARTICLES))
+        .into_par_iter()
+        .map_init(Scratch::default, |scratch, chunk| {
+            let first = chunk * PARTICLES;
+            let lists = first..count.min(first + PARTICLES);
+            scratch.begin_terms(&context, &lists, &depends);
+            neighbour.add_up(scratch, lists.clone())?;
+            centre.add_up(scratch, lists)?;
+            centre.weigh(scratch)
+        })
+        .collect::<Result<_, _>>()?;
+    let column = |c: usize| chunks.iter().flat_map(|columns| columns[c].iter().copied()).collect();
+    Ok((0..context.pass.columns.len()).map(column).collect())
+}
+
 impl<'a> Context<'a> {
+    /// How many particles have values.
+    pub(super) fn count(&self) -> usize {
+        self.lists.map_or(self.inputs.particles, Neighbours::len)
+    }
+
     fn view(&self, source: Source) -> View<'a> {
         let (columns, offset) = match source {
             Source::Stored { pass, column } => (self.stored.get(pass), column),
@@ -136,19 +191,8 @@ impl<'a> Context<'a> {
         lists: Range<usize>,
         values: &mut [f64],
     ) -> Result<(), ProgramError> {
-        scratch.prepare(self.pass);
         let count = lists.len();
-        scratch.centres.extend(lists.clone().map(|k| self.lists.map_or(k, |lists| lists.centre(k))));
-        scratch.particles[..self.pass.sums].iter_mut().for_each(|sums| sums.fill([0.0; GROUP]));
-        if let (Some(neighbours), true) = (self.lists, self.pass.sums > 0) {
-            for slot in (0..count).step_by(GROUP) {
-                let first = lists.start + slot;
-                let here = GROUP.min(lists.end - first);
-                let lists = std::array::from_fn(|p| if p < here { neighbours.of(first + p) } else { &[] });
-                self.enter(scratch, slot, lists)?;
-            }
-            self.flush(scratch, &[])?;
-        }
+        self.add_up(scratch, lists)?;
         self.execute(&self.pass.particles, scratch, count, false, &[])?;
         for (column, register) in self.pass.columns.iter().enumerate() {
             let results = &scratch.particles[*register].as_flattened()[..count];
@@ -167,6 +211,93 @@ impl<'a> Context<'a> {
         }
     }
 
+    /// The sums of a chunk of particles.
+    fn add_up(&self, scratch: &mut Scratch, lists: Range<usize>) -> Result<(), ProgramError> {
+        scratch.prepare(self.pass);
+        scratch.centres.extend(lists.clone().map(|k| self.lists.map_or(k, |lists| lists.centre(k))));
+        scratch.particles[..self.pass.sums].iter_mut().for_each(|sums| sums.fill([0.0; GROUP]));
+        if let (Some(neighbours), true) = (self.lists, self.pass.sums > 0) {
+            for slot in (0..lists.len()).step_by(GROUP) {
+                let first = lists.start + slot;
+                let here = GROUP.min(lists.end - first);
+                let lists = std::array::from_fn(|p| if p < here { neighbours.of(first + p) } else { &[] });
+                self.enter(scratch, slot, lists)?;
+            }
+            self.flush(scratch, &[])?;
+        }
+        Ok(())
+    }
+
+    /// The weights of a chunk of particles, whose sums and terms are there: columns by pair.
+    fn weigh(&self, scratch: &mut Scratch) -> Result<Vec<Vec<f64>>, ProgramError> {
+        let centres = std::mem::take(&mut scratch.centres);
+        let sums: Vec<Vec<Row>> = scratch.particles[..self.pass.sums].to_vec();
+        let own = std::mem::take(&mut scratch.own);
+        let of_pair: Vec<usize> = scratch
+            .starts
+            .windows(2)
+            .enumerate()
+            .flat_map(|(place, range)| std::iter::repeat_n(place, range[1] - range[0]))
+            .collect();
+        let mut columns = vec![Vec::with_capacity(of_pair.len()); self.pass.columns.len()];
+        for (block, places) in of_pair.chunks(PARTICLES).enumerate() {
+            let pairs = block * PARTICLES..block * PARTICLES + places.len();
+            scratch.own.clear();
+            scratch.own.extend_from_slice(&own[pairs.clone()]);
+            scratch.centres.clear();
+            scratch.centres.extend(places.iter().map(|place| centres[*place]));
+            let registers = scratch.particles.iter_mut().map(|register| register.as_flattened_mut());
+            for ((values, sums), terms) in registers.zip(&sums).zip(&scratch.terms) {
+                let sums = sums.as_flattened();
+                let alone = scratch.own.iter().zip(places);
+                match terms.get(pairs.clone()) {
+                    Some(terms) => {
+                        for ((value, (own, place)), term) in values.iter_mut().zip(alone).zip(terms) {
+                            *value = if *own { sums[*place] } else { *term };
+                        }
+                    }
+                    None => values.iter_mut().zip(places).for_each(|(value, place)| *value = sums[*place]),
+                }
+            }
+            self.execute(&self.pass.particles, scratch, places.len(), false, &[])?;
+            for (column, register) in columns.iter_mut().zip(&self.pass.columns) {
+                let values = &scratch.particles[*register].as_flattened()[..places.len()];
+                if let Some(lane) = values.iter().position(|value| !value.is_finite()) {
+                    let (particle, value) = (scratch.centres[lane], values[lane]);
+                    return Err(ProgramError::NotFinite { particle, value });
+                }
+                column.extend_from_slice(values);
+            }
+        }
+        Ok(columns)
+    }
+
+    /// What stands for a source that depends on the field.
+    fn seed(&self, probe: &Probe<'_>, operation: &Operation, scratch: &Scratch, values: &mut [f64], pairs: bool) {
+        let one = f64::from(u8::from(operation.source() == Some(probe.source)));
+        if !pairs {
+            for (value, own) in values.iter_mut().zip(&scratch.own) {
+                *value = if *own { one } else { 0.0 };
+            }
+            return;
+        }
+        let own = if probe.at == At::Centre { one } else { 0.0 };
+        for Group { centres, rows, .. } in &scratch.groups {
+            let values = values[rows.start * GROUP..rows.end * GROUP].chunks_exact_mut(GROUP);
+            for (row, neighbours) in values.zip(&scratch.neighbours[rows.clone()]) {
+                for ((value, j), centre) in row.iter_mut().zip(neighbours).zip(centres) {
+                    let carries = (*j as usize == *centre) == (probe.at == At::Centre);
+                    let gathered = if carries { one } else { 0.0 };
+                    *value = match operation {
+                        Operation::Gather(_) => gathered,
+                        Operation::Difference(_) => gathered - own,
+                        _ => own,
+                    };
+                }
+            }
+        }
+    }
+
     /// Enters the pairs of eight particles, in several blocks if they are too many for one.
     fn enter(
         &self,
@@ -176,6 +307,7 @@ impl<'a> Context<'a> {
     ) -> Result<(), ProgramError> {
         let own = |p: usize| scratch.centres.get(slot + p).copied().unwrap_or(scratch.centres[slot]);
         let centres = std::array::from_fn(own);
+        let mut first = 0;
         loop {
             let longest = lists.iter().map(|list| list.len()).max().unwrap_or(0).min(ROWS);
             if longest == 0 {
@@ -223,7 +355,8 @@ impl<'a> Context<'a> {
                     _ => {}
                 }
             }
-            scratch.groups.push(Group { slot, centres, rows });
+            scratch.groups.push(Group { slot, first, centres, rows });
+            first += longest;
         }
     }
 
@@ -278,9 +411,12 @@ impl<'a> Context<'a> {
                         });
                     }
                 }
-                Instruction::Reduce { common, factor, others, targets } => {
-                    scratch.reduce(*common, *factor, others, targets);
-                }
+                Instruction::Reduce { common, factor, others, targets } => match self.probe {
+                    Some(Probe { at: At::Neighbour, .. }) => {
+                        scratch.keep(*common, *factor, others, targets);
+                    }
+                    _ => scratch.reduce(*common, *factor, others, targets),
+                },
             }
         }
         Ok(())
@@ -290,6 +426,11 @@ impl<'a> Context<'a> {
         let registers = if pairs { &scratch.pairs } else { &scratch.particles };
         let lanes = values.len();
         let at = |register: Register| &registers[register].as_flattened()[..lanes];
+        if let (Some(probe), Some(source)) = (&self.probe, operation.source()) {
+            if probe.dependent.contains(&source) {
+                return self.seed(probe, operation, scratch, values, pairs);
+            }
+        }
         match *operation {
             Operation::Gather(source) => {
                 let view = self.view(source);
@@ -386,6 +527,44 @@ impl Scratch {
         self.groups.clear();
         self.centres.clear();
         self.filled = 0;
+    }
+
+    /// Room for the terms of these particles' pairs.
+    fn begin_terms(&mut self, context: &Context<'_>, lists: &Range<usize>, depends: &[bool]) {
+        (self.starts, self.own) = (vec![0], Vec::new());
+        for k in lists.clone() {
+            match context.lists {
+                Some(neighbours) => {
+                    let (list, centre) = (neighbours.of(k), neighbours.centre(k));
+                    let first = list.iter().position(|pair| pair.j as usize == centre);
+                    self.own.extend((0..list.len()).map(|place| Some(place) == first));
+                }
+                None => self.own.push(true),
+            }
+            self.starts.push(self.own.len());
+        }
+        let terms = |depends: &bool| if *depends { vec![0.0; self.own.len()] } else { Vec::new() };
+        self.terms = depends.iter().map(terms).collect();
+    }
+
+    /// The summands of what depends on the field, each in the place of its pair.
+    fn keep(&mut self, common: Register, factor: Option<Register>, others: &[Register], targets: &[Register]) {
+        for (other, target) in others.iter().zip(targets) {
+            let terms = &mut self.terms[*target];
+            if terms.is_empty() {
+                continue;
+            }
+            for Group { slot, first, rows, .. } in &self.groups {
+                for (p, range) in self.starts[*slot..].windows(2).take(GROUP).enumerate() {
+                    let begin = range[1].min(range[0] + first);
+                    for (row, term) in rows.clone().zip(&mut terms[begin..range[1]]) {
+                        let value = |register: Register| self.pairs[register][row][p];
+                        let weight = factor.map_or(1.0, value) * value(common);
+                        *term = weight * value(*other);
+                    }
+                }
+            }
+        }
     }
 
     /// See [`Instruction::Reduce`].

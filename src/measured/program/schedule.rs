@@ -507,26 +507,33 @@ fn terms_of(terms: &[(super::expression::Real, Id)]) -> Vec<(f64, Id)> {
     terms.iter().map(|(coefficient, id)| (coefficient.get(), *id)).collect()
 }
 
+/// What depends on the field: its components, and columns of passes.
+pub(super) fn dependent(passes: &[Pass]) -> Vec<Source> {
+    let mut found: Vec<Source> = Vec::new();
+    for (index, pass) in passes.iter().enumerate() {
+        for source in pass.sources() {
+            if matches!(source, Source::Field(_)) && !found.contains(&source) {
+                found.push(source);
+            }
+        }
+        let (_, columns) = pass.depends_on(&found);
+        let stored = |(column, depends): (usize, bool)| depends.then_some(Source::Stored { pass: index, column });
+        found.extend(columns.into_iter().enumerate().filter_map(stored));
+    }
+    found
+}
+
 /// Whether the field is read where it stands, and nothing that depends on it is taken from a neighbour: u − u_i may then stand
 /// for u everywhere, i the particle that the value is of.
 pub(super) fn takes_values(passes: &[Pass]) -> bool {
-    let mut depends: Vec<bool> = Vec::with_capacity(passes.len());
-    for pass in passes {
-        let of_field = |source: Source| match source {
-            Source::Field(_) => true,
-            Source::Stored { pass, .. } => depends[pass],
-            Source::Quantity(_) => false,
-        };
-        let taken_from_neighbour = |operation: &Operation| match operation {
-            Operation::Gather(source @ Source::Stored { .. })
-            | Operation::Difference(source @ Source::Stored { .. }) => of_field(*source),
-            _ => false,
-        };
-        if pass.operations().any(taken_from_neighbour) {
-            return false;
-        }
-        let own = pass.sources().any(of_field);
-        depends.push(own);
+    let dependent = dependent(passes);
+    let taken_from_neighbour = |operation: &Operation| match operation {
+        Operation::Gather(source @ Source::Stored { .. })
+        | Operation::Difference(source @ Source::Stored { .. }) => dependent.contains(source),
+        _ => false,
+    };
+    if passes.iter().flat_map(Pass::operations).any(taken_from_neighbour) {
+        return false;
     }
     let reads = |operation: &Operation| {
         matches!(operation, Operation::Gather(Source::Field(_)) | Operation::Own(Source::Field(_)))
@@ -559,11 +566,39 @@ impl Pass {
 
     /// Where its code reads from.
     pub(super) fn sources(&self) -> impl Iterator<Item = Source> {
-        self.operations().filter_map(|operation| match operation {
-            Operation::Gather(source) | Operation::Difference(source) | Operation::Own(source) => {
-                Some(*source)
+        self.operations().filter_map(Operation::source)
+    }
+
+    /// Which of its sums, and which of its columns, depend on these.
+    pub(super) fn depends_on(&self, sources: &[Source]) -> (Vec<bool>, Vec<bool>) {
+        let mut sums = vec![false; self.sums];
+        let mut registers = vec![false; self.pairs.registers];
+        trace(&self.pairs, sources, &mut registers, &mut sums);
+        let mut registers = sums.clone();
+        registers.resize(self.particles.registers, false);
+        trace(&self.particles, sources, &mut registers, &mut []);
+        (sums, self.columns.iter().map(|register| registers[*register]).collect())
+    }
+}
+
+/// Follows what depends on the sources from register to register, and into sums.
+fn trace(code: &Code, sources: &[Source], registers: &mut [bool], sums: &mut [bool]) {
+    for instruction in &code.instructions {
+        let depends = instruction.reads().iter().any(|register| registers[*register]);
+        match instruction {
+            Instruction::Compute { target, operation } => {
+                let reads = operation.source().is_some_and(|source| sources.contains(&source));
+                registers[*target] = depends || reads;
             }
-            _ => None,
-        })
+            Instruction::Solve { targets, .. } => {
+                targets.iter().for_each(|target| registers[*target] = depends);
+            }
+            Instruction::Reduce { common, factor, others, targets } => {
+                let weight = std::iter::once(*common).chain(*factor).any(|register| registers[register]);
+                for (other, target) in others.iter().zip(targets) {
+                    sums[*target] |= weight || registers[*other];
+                }
+            }
+        }
     }
 }

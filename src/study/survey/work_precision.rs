@@ -9,7 +9,7 @@ use super::super::advise::{Request, derived_error};
 use super::super::plan::Omission;
 use super::{Parameters, Survey, SurveyTask, TaskError, entry, table_row};
 use crate::claim::{Assertion, Measured, Observed, Published};
-use crate::evolve::{Matrix, probes};
+use crate::evolve::Matrix;
 use crate::kernel::Kernel;
 use crate::language::{Derivative, Field, Target, operators};
 use crate::measured::{Fields, Program};
@@ -172,7 +172,7 @@ struct Point {
     /// Of the sums taken anew, for each particle.
     flops_direct: f64,
     bytes_direct: f64,
-    /// Of assembling: the sums taken once for every colour.
+    /// Of assembling.
     flops_assembled: f64,
     kernels_per_pair: u64,
     systems_per_particle: u64,
@@ -262,25 +262,18 @@ impl Fronts {
             }
         }
         let error = (square / count as f64).sqrt() / k.powi(power);
-        let nested = program.passes() > 1;
-        let reach = if nested { 2.0 * support } else { support };
-        let wider = match nested {
-            true => {
-                let support = Support::Uniform(reach);
-                let cloud = Cloud::new(2, cloud.positions().to_vec(), cloud.volumes().to_vec(), support)?;
-                Some(Neighbours::search(&cloud.with_periods([Some(n as f64), Some(n as f64), None])?)?)
-            }
-            false => None,
-        };
-        let pattern = wider.as_ref().unwrap_or(&lists);
-        // The weights themselves do not matter to what an application costs.
-        let rows = (0..count).map(|i| pattern.of(i).iter().map(|pair| (pair.j, 1.0)).collect());
+        let weights = program.weights(&cloud, &lists)?;
+        let assembled = median(|| {
+            std::hint::black_box(program.weights(&cloud, &lists).is_ok());
+        });
+        // Components share the places of their weights, zeros among them; what an application costs depends on these alone.
+        let places = weights.first().into_iter().flatten();
+        let rows = places.map(|row| row.iter().map(|(j, _)| (*j, 1.0)).collect());
         let matrix = Matrix::from_rows(count, rows);
         let u = vec![1.0; count];
         let applied = median(|| {
             std::hint::black_box(matrix.apply(&u));
         });
-        let colours = f64::from(probes(&cloud, reach));
         let (pairs, weights) = (lists.entry_count() as f64, matrix.entries() as f64);
         let counted = program.operations();
         let each = count as f64;
@@ -312,14 +305,14 @@ impl Fronts {
             flops_direct: rounded(flops_direct),
             // A list entry of 32 bytes, and 16 of the neighbour's volume and value, for each pair and pass.
             bytes_direct: rounded(program.passes() as f64 * 48.0 * pairs / each),
-            flops_assembled: rounded(colours * flops_direct),
+            flops_assembled: rounded(program.operations_of_weights(pairs / each)),
             kernels_per_pair: counted.kernels_per_pair,
             systems_per_particle: counted.systems_per_particle,
         };
         let timed = Timed {
             seconds_applied: applied * components / each,
             seconds_direct: direct / each,
-            seconds_assembled: colours * direct / each,
+            seconds_assembled: assembled / each,
         };
         Ok(Found::Value(Box::new(point), timed))
     }
@@ -411,9 +404,9 @@ impl Survey for Fronts {
 
     fn omissions(&self) -> Vec<Omission> {
         vec![Omission {
-            what: "weights of assembled rows".into(),
-            why: "what an application costs depends on how many there are alone; errors are taken from the sums".into(),
-            saved: Some("an assembly for each point: one application for every colour".into()),
+            what: "errors of the assembled rows".into(),
+            why: "rows do what their operator does; errors are taken from the sums".into(),
+            saved: Some("two products for each point".into()),
         }]
     }
 
