@@ -8,8 +8,8 @@
 use nalgebra::{Complex, DMatrix, DVector};
 use remainder::evolve::heat::{Boundary, HeatProblem, layered};
 use remainder::evolve::{
-    EvolveError, Explicit, Implicit, Matrix, System, assemble, chebyshev_stages, exponential, march,
-    march_implicit, spectrum, steady,
+    EvolveError, Explicit, Implicit, Matrix, System, assemble, chebyshev_stages, chebyshev_stretches,
+    exponential, march, march_implicit, march_stretches, spectrum, steady,
 };
 use remainder::kernel::by_id;
 use remainder::language::{Operator, operators};
@@ -140,6 +140,40 @@ fn each_method_has_its_order_and_not_one_more() {
     check("rkc", 2.0, &explicit(Explicit::Rkc(7)));
     check("implicit euler", 1.0, &implicit(Implicit::Euler));
     check("tr-bdf2", 2.0, &implicit(Implicit::TrBdf2));
+}
+
+#[test]
+fn steps_that_grow_add_up_to_the_time() {
+    for (time, steps, radius) in
+        [(0.1, 200, 8e4), (0.1, 1, 8e4), (0.1, 7, 8e4), (3.0, 50, 1.0), (3.0, 50, 0.0)]
+    {
+        let stretches = chebyshev_stretches(time, steps, radius);
+        let (count, sum) = stretches
+            .iter()
+            .fold((0, 0.0), |(count, sum), s| (count + s.steps, sum + s.step * s.steps as f64));
+        assert_eq!(count, steps);
+        assert!((sum - time).abs() < 1e-14 * time * steps as f64, "{sum} is {time}");
+        assert!(stretches.iter().all(|s| s.steps > 0 && chebyshev_stages(radius * s.step) == s.stages));
+        let grows = |pair: &[remainder::evolve::Stretch]| {
+            pair[1].step >= pair[0].step * (1.0 - 1e-12) && pair[1].step <= pair[0].step * (1.3 + 1e-12)
+        };
+        assert!(stretches.windows(2).all(grows), "{stretches:?}");
+    }
+    assert!(chebyshev_stretches(0.1, 200, 8e4)[0].step == 4.0 / 8e4);
+}
+
+/// What the jump at the wall puts into stiff modes is gone before steps get long; with equal steps it is not.
+#[test]
+fn steps_that_grow_damp_what_a_jump_leaves() {
+    let heat = heat(40, 2.5, 0.0, Boundary::CutOff).discretise(&program("S4")).unwrap();
+    let start = vec![0.0; heat.places.len()];
+    let (exact, _) = exponential(&heat.system, &start, 0.1, 1e-10).unwrap();
+    let radius = 1.1 * spectrum::radius(&heat.system.matrix, 60);
+    let (mut grown, mut equal) = (start.clone(), start);
+    march_stretches(&heat.system, &chebyshev_stretches(0.1, 50, radius), &mut grown).unwrap();
+    march(&heat.system, Explicit::Rkc(chebyshev_stages(radius * 0.002)), &mut equal, 0.002, 50).unwrap();
+    let (grown, equal) = (apart(&grown, &exact), apart(&equal, &exact));
+    assert!(grown < 1e-4 && equal > 20.0 * grown, "{grown:e} {equal:e}");
 }
 
 #[test]

@@ -9,6 +9,7 @@ use super::{EvolveError, Matrix, System, assemble};
 use crate::language::tree::OfParticle;
 use crate::measured::Program;
 use crate::particles::{Cloud, Disorder, Draw, SampleStream, Site, Support, lattice_by_id};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -144,26 +145,26 @@ impl HeatProblem {
         let cloud = Cloud::new(2, positions, volumes, Support::Uniform(support))?;
         let cloud = cloud.with_field(OfParticle::Viscosity.field_name(), carried)?;
         let rows = assemble(program, &cloud, &inner)?;
-        let mut source = vec![0.0; inner.len()];
-        let folded: Vec<Vec<(u32, f64)>> = (0..inner.len())
+        let (source, folded): (Vec<f64>, Vec<Vec<(u32, f64)>>) = (0..inner.len())
+            .into_par_iter()
             .map(|i| {
-                let mut row = Vec::new();
+                let (mut source, mut row) = (0.0, Vec::new());
                 for (column, value) in rows.row(i) {
                     let image = match column.checked_sub(n * n) {
                         None => &Image { of: column, factor: 1.0, constant: 0.0 },
                         Some(ghost) => &images[ghost].1,
                     };
-                    source[i] += value * image.constant;
+                    source += value * image.constant;
                     let value = value * image.factor;
                     if on_wall(image.of) {
-                        source[i] += value * wall_value(image.of);
+                        source += value * wall_value(image.of);
                     } else {
                         row.push((unknown[image.of] as u32, value));
                     }
                 }
-                row
+                (source, row)
             })
-            .collect();
+            .unzip();
         let matrix = Matrix::from_rows(inner.len(), folded);
         let alone = Cloud::new(2, grid.clone(), vec![dx * dx; n * n], Support::Uniform(support))?;
         let closest = alone.closest_pair().map_or(dx, |pair| pair.distance);

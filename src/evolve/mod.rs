@@ -21,7 +21,7 @@ mod system;
 
 pub use assemble::assemble;
 pub use error::{EvolveError, Unstable};
-pub use explicit::{Explicit, chebyshev_stages, march};
+pub use explicit::{Explicit, Stretch, chebyshev_stages, chebyshev_stretches, march, march_stretches};
 pub use implicit::{Implicit, Solver, march_implicit, steady};
 pub use krylov::exponential;
 pub use matrix::Matrix;

@@ -114,13 +114,16 @@ impl Program {
             let last = index + 1 == self.passes.len();
             // Pass 0 does not look at neighbours; the last one is taken where there are lists.
             let lists = (index > 0 || last).then_some(neighbours);
-            let context = Context { pass, program: self, inputs: &inputs, stored: &stored, lists, probe: None };
+            let context =
+                Context { pass, program: self, inputs: &inputs, stored: &stored, lists, probe: None };
             let values = run::pass(context)?;
             stored.push(Columns { values: Cow::Owned(values), stride: pass.columns.len(), offset: 0 });
         }
         let mut values = stored.pop().map(|columns| columns.values.into_owned()).unwrap_or_default();
         let width = self.components.max(1);
-        Self::in_units(values.iter_mut().enumerate(), self.unit(support), |at| neighbours.centre(at / width))?;
+        Self::in_units(values.iter_mut().enumerate(), self.unit(support), |at| {
+            neighbours.centre(at / width)
+        })?;
         Ok(values)
     }
 
@@ -167,7 +170,12 @@ impl Program {
     }
 
     /// The support of all particles.
-    pub(super) fn check(&self, cloud: &Cloud, neighbours: &Neighbours, field: Fields<'_>) -> Result<f64, ProgramError> {
+    pub(super) fn check(
+        &self,
+        cloud: &Cloud,
+        neighbours: &Neighbours,
+        field: Fields<'_>,
+    ) -> Result<f64, ProgramError> {
         if cloud.dimension() != self.dimension {
             return Err(ProgramError::OtherDimension { expected: self.dimension, found: cloud.dimension() });
         }

@@ -42,7 +42,7 @@ impl Program {
         }
     }
 
-    fn of_code(&self, code: &Code) -> Operations {
+    pub(super) fn of_code(&self, code: &Code) -> Operations {
         let mut found = Operations::default();
         for instruction in &code.instructions {
             found.per_pair += match instruction {

@@ -144,6 +144,35 @@ impl Instruction {
             }
         }
     }
+
+    /// The registers that it gives a value; sums are not counted among them.
+    pub(super) fn writes(&self) -> Vec<Register> {
+        match self {
+            Self::Compute { target, .. } => vec![*target],
+            Self::Solve { targets, .. } => targets.clone(),
+            Self::Reduce { .. } => Vec::new(),
+        }
+    }
+
+    /// Gives other names to what it reads and writes.
+    pub(super) fn rename(&mut self, name: &dyn Fn(Register) -> Register) {
+        match self {
+            Self::Compute { target, operation } => {
+                *operation = operation.renamed(name);
+                *target = name(*target);
+            }
+            Self::Solve { matrix, targets, .. } => {
+                matrix.iter_mut().chain(targets).for_each(|register| *register = name(*register));
+            }
+            Self::Reduce { common, factor, others, .. } => {
+                others
+                    .iter_mut()
+                    .chain([common])
+                    .chain(factor)
+                    .for_each(|register| *register = name(*register));
+            }
+        }
+    }
 }
 
 /// What is used only once is drawn into the instruction that uses it: a product into a sum, a root or a weight into the
@@ -238,31 +267,11 @@ pub(super) fn allocate(
     };
     for (place, instruction) in instructions.iter_mut().enumerate() {
         let reads = instruction.reads();
-        let written: Vec<Register> = match instruction {
-            Instruction::Compute { target, .. } => vec![*target],
-            Instruction::Solve { targets, .. } => targets.clone(),
-            Instruction::Reduce { .. } => Vec::new(),
-        };
+        let written = instruction.writes();
         for value in &written {
             places[*value] = give(&mut free);
         }
-        let name = |register: Register| places[register];
-        match instruction {
-            Instruction::Compute { target, operation } => {
-                *operation = operation.renamed(&name);
-                *target = name(*target);
-            }
-            Instruction::Solve { matrix, targets, .. } => {
-                matrix.iter_mut().chain(targets).for_each(|register| *register = name(*register));
-            }
-            Instruction::Reduce { common, factor, others, .. } => {
-                others
-                    .iter_mut()
-                    .chain([common])
-                    .chain(factor)
-                    .for_each(|register| *register = name(*register));
-            }
-        }
+        instruction.rename(&|register| places[register]);
         let mut dead: Vec<Register> =
             reads.iter().chain(&written).copied().filter(|v| last_use[*v] <= place).collect();
         dead.sort_unstable();

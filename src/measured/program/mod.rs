@@ -22,6 +22,7 @@ mod products;
 mod run;
 mod schedule;
 mod solve;
+mod split;
 mod weights;
 
 pub use compile::{Fields, Program};

@@ -5,8 +5,8 @@
 //! particle's pairs are added up in the order of its list, whatever stands beside it and whichever thread it is on.
 //!
 //! [`weights`] takes the derivative of a pass by what its particles carry instead. As the pass is linear in that, the weight of
-//! a neighbour is the value where it alone carries 1: its own term stands for the whole sum, and the code of the particles is
-//! carried out on pairs.
+//! a neighbour is the value where it alone carries 1: its own term stands for the whole sum, and what the particles' code does
+//! with such sums is done for every pair.
 
 use super::ProgramError;
 use super::compile::Program;
@@ -15,6 +15,7 @@ use super::instruction::{Code, Instruction, Operation, Register, Source};
 use super::kernel::Distance;
 use super::schedule::Pass;
 use super::solve;
+use super::split::{Input, Split};
 use crate::particles::{Neighbour, Neighbours};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -150,6 +151,7 @@ pub(super) fn weights<'a>(
     let probe = |at| Context { probe: Some(Probe { dependent, source, at }), ..context };
     let (neighbour, centre) = (probe(At::Neighbour), probe(At::Centre));
     let (depends, _) = context.pass.depends_on(dependent);
+    let split = context.pass.split(dependent);
     let count = context.count();
     let chunks: Vec<Vec<Vec<f64>>> = (0..count.div_ceil(PARTICLES))
         .into_par_iter()
@@ -159,7 +161,7 @@ pub(super) fn weights<'a>(
             scratch.begin_terms(&context, &lists, &depends);
             neighbour.add_up(scratch, lists.clone())?;
             centre.add_up(scratch, lists)?;
-            centre.weigh(scratch)
+            centre.weigh(scratch, &split)
         })
         .collect::<Result<_, _>>()?;
     let column = |c: usize| chunks.iter().flat_map(|columns| columns[c].iter().copied()).collect();
@@ -229,16 +231,26 @@ impl<'a> Context<'a> {
     }
 
     /// The weights of a chunk of particles, whose sums and terms are there: columns by pair.
-    fn weigh(&self, scratch: &mut Scratch) -> Result<Vec<Vec<f64>>, ProgramError> {
-        let centres = std::mem::take(&mut scratch.centres);
+    fn weigh(&self, scratch: &mut Scratch, split: &Split) -> Result<Vec<Vec<f64>>, ProgramError> {
+        let registers = split.once.registers.max(split.each.registers);
+        if scratch.particles.len() < registers {
+            scratch.particles.resize_with(registers, || vec![[0.0; GROUP]; PARTICLES / GROUP]);
+        }
         let sums: Vec<Vec<Row>> = scratch.particles[..self.pass.sums].to_vec();
-        let own = std::mem::take(&mut scratch.own);
-        let of_pair: Vec<usize> = scratch
-            .starts
-            .windows(2)
-            .enumerate()
-            .flat_map(|(place, range)| std::iter::repeat_n(place, range[1] - range[0]))
+        self.execute(&split.once, scratch, scratch.centres.len(), false, &[])?;
+        // By input, for each particle: its own value, which for a sum is that of its own weight.
+        let inputs: Vec<Vec<Row>> = split
+            .inputs
+            .iter()
+            .map(|input| match input {
+                Input::Sum(sum) => sums[*sum].clone(),
+                Input::Once(register) => scratch.particles[*register].clone(),
+            })
             .collect();
+        let (centres, own) = (std::mem::take(&mut scratch.centres), std::mem::take(&mut scratch.own));
+        let pairs_of = scratch.starts.windows(2).map(|range| range[1] - range[0]).enumerate();
+        let of_pair: Vec<usize> =
+            pairs_of.flat_map(|(place, count)| std::iter::repeat_n(place, count)).collect();
         let mut columns = vec![Vec::with_capacity(of_pair.len()); self.pass.columns.len()];
         for (block, places) in of_pair.chunks(PARTICLES).enumerate() {
             let pairs = block * PARTICLES..block * PARTICLES + places.len();
@@ -246,21 +258,22 @@ impl<'a> Context<'a> {
             scratch.own.extend_from_slice(&own[pairs.clone()]);
             scratch.centres.clear();
             scratch.centres.extend(places.iter().map(|place| centres[*place]));
-            let registers = scratch.particles.iter_mut().map(|register| register.as_flattened_mut());
-            for ((values, sums), terms) in registers.zip(&sums).zip(&scratch.terms) {
-                let sums = sums.as_flattened();
-                let alone = scratch.own.iter().zip(places);
-                match terms.get(pairs.clone()) {
-                    Some(terms) => {
-                        for ((value, (own, place)), term) in values.iter_mut().zip(alone).zip(terms) {
-                            *value = if *own { sums[*place] } else { *term };
+            for ((register, of_particle), input) in
+                scratch.particles.iter_mut().zip(&inputs).zip(&split.inputs)
+            {
+                let (values, of_particle) = (register.as_flattened_mut(), of_particle.as_flattened());
+                values.iter_mut().zip(places).for_each(|(value, place)| *value = of_particle[*place]);
+                if let Input::Sum(sum) = input {
+                    let terms = scratch.terms[*sum][pairs.clone()].iter().zip(&scratch.own);
+                    for (value, (term, own)) in values.iter_mut().zip(terms) {
+                        if !own {
+                            *value = *term;
                         }
                     }
-                    None => values.iter_mut().zip(places).for_each(|(value, place)| *value = sums[*place]),
                 }
             }
-            self.execute(&self.pass.particles, scratch, places.len(), false, &[])?;
-            for (column, register) in columns.iter_mut().zip(&self.pass.columns) {
+            self.execute(&split.each, scratch, places.len(), false, &[])?;
+            for (column, register) in columns.iter_mut().zip(&split.columns) {
                 let values = &scratch.particles[*register].as_flattened()[..places.len()];
                 if let Some(lane) = values.iter().position(|value| !value.is_finite()) {
                     let (particle, value) = (scratch.centres[lane], values[lane]);
@@ -273,7 +286,14 @@ impl<'a> Context<'a> {
     }
 
     /// What stands for a source that depends on the field.
-    fn seed(&self, probe: &Probe<'_>, operation: &Operation, scratch: &Scratch, values: &mut [f64], pairs: bool) {
+    fn seed(
+        &self,
+        probe: &Probe<'_>,
+        operation: &Operation,
+        scratch: &Scratch,
+        values: &mut [f64],
+        pairs: bool,
+    ) {
         let one = f64::from(u8::from(operation.source() == Some(probe.source)));
         if !pairs {
             for (value, own) in values.iter_mut().zip(&scratch.own) {
@@ -548,7 +568,13 @@ impl Scratch {
     }
 
     /// The summands of what depends on the field, each in the place of its pair.
-    fn keep(&mut self, common: Register, factor: Option<Register>, others: &[Register], targets: &[Register]) {
+    fn keep(
+        &mut self,
+        common: Register,
+        factor: Option<Register>,
+        others: &[Register],
+        targets: &[Register],
+    ) {
         for (other, target) in others.iter().zip(targets) {
             let terms = &mut self.terms[*target];
             if terms.is_empty() {

@@ -517,7 +517,8 @@ pub(super) fn dependent(passes: &[Pass]) -> Vec<Source> {
             }
         }
         let (_, columns) = pass.depends_on(&found);
-        let stored = |(column, depends): (usize, bool)| depends.then_some(Source::Stored { pass: index, column });
+        let stored =
+            |(column, depends): (usize, bool)| depends.then_some(Source::Stored { pass: index, column });
         found.extend(columns.into_iter().enumerate().filter_map(stored));
     }
     found

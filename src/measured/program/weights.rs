@@ -19,7 +19,8 @@ pub type Weights = Vec<(u32, f64)>;
 impl Program {
     /// The weights of the values on a scalar field: for each component, one row for each list of neighbours.
     ///
-    /// Kernels and tensors are taken twice for each pair and source, however many neighbours there are.
+    /// Kernels are taken twice for each pair, tensors once for each particle, and both again for each inner operator that the
+    /// outer one reads.
     ///
     /// # Errors
     /// As [`apply`](Self::apply).
@@ -93,6 +94,8 @@ impl Program {
                 let lanes = if index == 0 { 1.0 } else { pairs };
                 let counted = self.operations_of(pass);
                 let (pair, particle) = (counted.per_pair as f64, counted.per_particle as f64);
+                let split = pass.split(&dependent);
+                let [once, each] = [&split.once, &split.each].map(|code| self.of_code(code).per_pair as f64);
                 let sources = self.sources_of(pass, &dependent);
                 let chained = sources.iter().filter_map(|source| match source {
                     // Rows grow with the reach.
@@ -103,7 +106,7 @@ impl Program {
                     _ => None,
                 });
                 let values = if index + 1 < self.all_passes().len() { pair * lanes + particle } else { 0.0 };
-                sources.len() as f64 * lanes * (2.0 * pair + particle) + chained.sum::<f64>() + values
+                sources.len() as f64 * (lanes * (2.0 * pair + each) + once) + chained.sum::<f64>() + values
             })
             .sum()
     }

@@ -1,6 +1,6 @@
 //! The engine: checks, blocks of particles, threads.
 
-use super::arithmetic::{BATCH, Scratch, Space, Take, Task};
+use super::arithmetic::{BATCH, Scratch, Task};
 use super::radial::Radial;
 use super::request::{Plan, RadialSum};
 use super::sorted::Sorted;
@@ -187,30 +187,24 @@ impl Engine {
         self.check_points(points, width, out)?;
         let points = Points { fields: &points.fields[..self.plan.fields], ..*points };
         self.sorted.rebuild(&points, self.dimension, self.support);
-        self.pairs = match self.dimension {
-            1 => self.sums::<1>(width, out, &finish),
-            2 => self.sums::<2>(width, out, &finish),
-            _ => self.sums::<3>(width, out, &finish),
-        };
+        self.pairs = self.sums(width, out, &finish);
         Ok(())
     }
 
-    fn sums<const D: usize>(
+    fn sums(
         &self,
         width: usize,
         out: &mut [f64],
         finish: &(impl Fn(Centre<'_>, &[f64], &mut [f64]) + Sync + Send),
-    ) -> u64
-    where
-        Space<D>: Take,
-    {
+    ) -> u64 {
+        let dimension = self.dimension;
         let (sorted, plan) = (&self.sorted, &self.plan);
         let task = Task { sorted, plan, radial: &self.radial, support: self.support };
         let pairs = AtomicU64::new(0);
-        let start = || (Scratch::new(plan, D), vec![0.0; plan.columns.len()]);
+        let start = || (Scratch::new(plan, dimension), vec![0.0; plan.columns.len()]);
         write_rows(&sorted.order, out, width, STRETCH, start, |(scratch, columns), places, rows| {
             let mut last = places.start;
-            block::<D>(self.path, &task, places, scratch, &mut |first, count, scratch| {
+            block(dimension, self.path, &task, places, scratch, &mut |first, count, scratch| {
                 while last < first + 3 * BATCH {
                     rows.fetch(last);
                     last += 1;
@@ -225,7 +219,7 @@ impl Engine {
                     }
                     let place = first + particle;
                     let (index, row) = rows.row(place);
-                    finish(Centre { sorted, dimension: D, place, index }, sums, row);
+                    finish(Centre { sorted, dimension, place, index }, sums, row);
                 }
             });
             pairs.fetch_add(std::mem::take(&mut scratch.pairs), Relaxed);

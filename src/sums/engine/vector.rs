@@ -61,8 +61,24 @@ impl Path {
 /// What is called with the first place of some particles and how many there are, their sums in the scratch.
 pub(super) type Done<'a, 'b> = &'a mut (dyn FnMut(usize, usize, &mut Scratch) + 'b);
 
-/// Evaluates the particles at `places`, a few at a time.
-pub(super) fn block<const D: usize>(
+/// Evaluates the particles at `places`, a few at a time. Without parameters of type, so that it is compiled here, once, and not
+/// with every caller.
+pub(super) fn block(
+    dimension: usize,
+    path: Path,
+    task: &Task<'_>,
+    places: Range<usize>,
+    scratch: &mut Scratch,
+    done: Done<'_, '_>,
+) {
+    match dimension {
+        1 => block_in::<1>(path, task, places, scratch, done),
+        2 => block_in::<2>(path, task, places, scratch, done),
+        _ => block_in::<3>(path, task, places, scratch, done),
+    }
+}
+
+fn block_in<const D: usize>(
     path: Path,
     task: &Task<'_>,
     places: Range<usize>,

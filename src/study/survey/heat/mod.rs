@@ -44,7 +44,7 @@ pub(super) struct Runs {
     /// `euler`, `rk2`, `rk4`, `rkc`, `implicit-euler`, `tr-bdf2`, `exact` (the semi-discrete system solved to 1e-9).
     #[serde(default = "euler")]
     pub integrators: Vec<String>,
-    /// Steps of `rkc`, `implicit-euler` and `tr-bdf2`.
+    /// Steps of `rkc` (short ones first), `implicit-euler` and `tr-bdf2`.
     #[serde(default = "fifty")]
     pub steps: u32,
     /// `cut-off`, `ghosts`.

@@ -3,7 +3,8 @@
 use super::super::TaskError;
 use crate::evolve::heat::{HeatErrors, HeatProblem, HeatSystem};
 use crate::evolve::{
-    EvolveError, Explicit, Implicit, chebyshev_stages, exponential, march, march_implicit, spectrum, steady,
+    EvolveError, Explicit, Implicit, chebyshev_stretches, exponential, march, march_implicit,
+    march_stretches, spectrum, steady,
 };
 use crate::kernel::Kernel;
 use crate::measured::Program;
@@ -178,25 +179,26 @@ pub(in super::super) fn integrate(
     courant: f64,
 ) -> Result<Integrated, TaskError> {
     let mut u = vec![0.0; heat.places.len()];
-    let explicit = |method: Explicit, steps: u64, extra: u64, mut u: Vec<f64>| {
-        let products = steps * u64::from(method.stages()) + extra;
-        match march(&heat.system, method, &mut u, time / steps as f64, steps) {
-            Ok(()) => Ok((steps, products, Ok(u))),
-            Err(EvolveError::Unstable(unstable)) => {
-                Ok((steps, products, Err(EvolveError::Unstable(unstable).to_string())))
-            }
-            Err(error) => Err(TaskError::from(error)),
+    let ended = |steps: u64, products: u64, u: Vec<f64>, result: Result<(), EvolveError>| match result {
+        Ok(()) => Ok((steps, products, Ok(u))),
+        Err(EvolveError::Unstable(unstable)) => {
+            Ok((steps, products, Err(EvolveError::Unstable(unstable).to_string())))
         }
+        Err(error) => Err(TaskError::from(error)),
     };
     match integrator {
         Integrator::Explicit(method) => {
             let step = courant * heat.closest * heat.closest;
-            explicit(method, ((time / step - 1e-9).ceil() as u64).max(1), 0, u)
+            let steps = ((time / step - 1e-9).ceil() as u64).max(1);
+            let result = march(&heat.system, method, &mut u, time / steps as f64, steps);
+            ended(steps, steps * u64::from(method.stages()), u, result)
         }
         Integrator::Chebyshev(steps) => {
             let radius = SAFETY * spectrum::radius(&heat.system.matrix, POWER_STEPS);
-            let stages = chebyshev_stages(radius * time / f64::from(steps));
-            explicit(Explicit::Rkc(stages), u64::from(steps), POWER_STEPS as u64, u)
+            let stretches = chebyshev_stretches(time, u64::from(steps), radius);
+            let products = stretches.iter().map(|s| s.steps * u64::from(s.stages)).sum::<u64>();
+            let result = march_stretches(&heat.system, &stretches, &mut u);
+            ended(u64::from(steps), products + POWER_STEPS as u64, u, result)
         }
         Integrator::Implicit(method, steps) => {
             let step = time / f64::from(steps);
