@@ -14,7 +14,7 @@ const LOOK: u64 = 32;
 const DAMPING: f64 = 2.0 / 13.0;
 
 /// The first step of Runge–Kutta–Chebyshev times the spectral radius.
-const FIRST_STEP: f64 = 4.0;
+const FIRST_STEP: f64 = 1.0;
 
 /// By how much each is longer than the one before.
 const GROWTH_OF_STEPS: f64 = 1.3;
@@ -96,11 +96,11 @@ pub struct Stretch {
 /// So many steps of Runge–Kutta–Chebyshev over a time, for a spectral radius ρ.
 ///
 /// A step multiplies a mode with ρΔt ≫ 1 by up to 1 − ε/3 = 0.95 only, so what a jump at the start puts into such modes would
-/// still be there after dozens of equal steps. The first step therefore is 4/ρ, and each is 1.3 times as long as the one
+/// still be there after dozens of equal steps. The first step therefore is 1/ρ, and each is 1.3 times as long as the one
 /// before, until the rest can be of one length: every mode is damped while the steps are still short for it.
 pub fn chebyshev_stretches(time: f64, steps: u64, radius: f64) -> Vec<Stretch> {
     let growing = |count: u64| (GROWTH_OF_STEPS.powf(count as f64) - 1.0) / (GROWTH_OF_STEPS - 1.0);
-    // Where even steps that grow to the end do not get there from 4/ρ, they start from a longer one.
+    // Where even steps that grow to the end do not get there from 1/ρ, they start from a longer one.
     let first = (FIRST_STEP / radius).min(time).max(time / growing(steps));
     let of = |growth: u64| first * GROWTH_OF_STEPS.powf(growth as f64);
     let rest = |growth: u64| (time - first * growing(growth)) / (steps - growth) as f64;
