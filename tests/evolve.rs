@@ -287,7 +287,10 @@ fn ghosts_lack_a_second_derivative_where_the_solution_has_one() {
             *worst = worst.max(residual.abs());
         }
         let [elsewhere, there] = worst;
-        assert!(there > 1.0 && elsewhere < 0.1, "{n}: {there} at the wall y = 1, {elsewhere} elsewhere");
+        assert!(
+            (1.0..30.0).contains(&there) && elsewhere < 0.1,
+            "{n}: {there} at the wall y = 1, {elsewhere} elsewhere"
+        );
     }
 }
 
